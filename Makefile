@@ -23,6 +23,9 @@ PYTEST_ARGS ?= -n 2 --dist loadfile --no-loadscope-reorder
 RANDOM_COUNT ?= 600
 RANDOM_SEED ?= 0
 
+# Random mechanisms of `make named`.
+NAMED_RANDOM ?= 60
+
 # Hostile states for the generated C: how many, which draw, how compiled (tests/hostile/campaign.py).
 HOSTILE_STATES ?= 1000000
 HOSTILE_SEED ?= 0
@@ -133,6 +136,10 @@ fuzz: $(VENV)/test.stamp ## Give pne-gen 100,000 broken specifications (FUZZ_CAS
 .PHONY: random
 random: $(VENV)/test.stamp ## Derive RANDOM_COUNT (600) mechanisms drawn from RANDOM_SEED on, compare all
 	$(BIN)/python -m tests.random.tally --count $(RANDOM_COUNT) --seed $(RANDOM_SEED) --jobs 2
+
+.PHONY: named
+named: $(VENV)/test.stamp ## Prove of all models and NAMED_RANDOM (60) random ones that values are what they are called
+	$(BIN)/python -m tests.tools.named --random $(NAMED_RANDOM)
 
 .PHONY: mutants
 mutants: $(VENV)/test.stamp ## Plant about 100 faults, one at a time in a copy (MUTANTS, MUTANT_JOBS): tests must find each

@@ -495,14 +495,14 @@ int delta_prepare(const delta_params *params, delta_model *model)
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rus = 0;
-    real total_rus_x = 0;
-    real total_rus_y = 0;
-    real total_rus_z = 0;
-    real total_rus_x_2 = 0;
-    real total_rus_y_2 = 0;
-    real total_rus_z_2 = 0;
-    real total_rus_2 = 0;
+    real m_star_rus = 0;
+    real h_star_rus_in_platform_x = 0;
+    real h_star_rus_in_platform_y = 0;
+    real h_star_rus_in_platform_z = 0;
+    real b_c_rus_in_platform_x = 0;
+    real b_c_rus_in_platform_y = 0;
+    real b_c_rus_in_platform_z = 0;
+    real legs_size_rus = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -558,113 +558,110 @@ int delta_prepare(const delta_params *params, delta_model *model)
         const real rus_branch_1 = signs_rus_branch_1[own];
         static const signed char signs_rus_branch_2[] = {1, 1, 1};
         const real rus_branch_2 = signs_rus_branch_2[own];
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_joint2_offset_x*rus_joint2_offset_x;
-        const real rus_Kd_1_t_2 = R(0.5)*rus_Kd_1_t;
-        const real rus_Kd_1_t_3 = rus_platform_joint_offset_x*rus_platform_joint_offset_x;
-        const real rus_Kd_1_t_4 = R(0.5)*rus_Kd_1_t_3;
         /* (rus-size) length of the leg's lever arms, the measure of what is near singular */
-        const real rus_size_t = R(5.72469284689e-07) + rus_Kd_1_t + rus_Kd_1_t_3;
-        const real rus_size = root(rus_size_t);
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1_t = rus_size*rus_size*rus_size_t;
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = 1/rus_Kd_1_t;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = 1/rus_Kd_1_t_3;
-        /* (rus-rho_tip_3) connection point to the centre of mass of link 3 */
-        const real rus_rho_tip_3_x = rus_link3_centre_of_mass_x - rus_platform_joint_offset_x;
-        /* (rus-h_3) first moment of link 3 about the connection point */
-        const real rus_h_3_x = rus_link3_mass*rus_rho_tip_3_x;
-        const real rus_h_3_y = rus_link3_centre_of_mass_y*rus_link3_mass;
-        const real rus_h_3_z = rus_link3_centre_of_mass_z*rus_link3_mass;
-        /* (rus-w_3) reciprocal vector 3 */
-        const real inv_rus_platform_joint_offset_x = 1/rus_platform_joint_offset_x;
-        /* (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real rus_d_phi_3_t = inv_rus_platform_joint_offset_x*rus_h_3_z;
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_J_3_t = rus_rho_tip_3_x*rus_rho_tip_3_x;
-        const real rus_J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y;
-        const real rus_J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z;
-        const real rus_J_3_t_4 = rus_J_3_t + rus_J_3_t_2 + rus_J_3_t_3;
-        const real rus_J_3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t - rus_J_3_t_4);
-        const real rus_J_3_xy = rus_link3_inertia_xy -
-            rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_x;
-        const real rus_J_3_xz = rus_link3_inertia_xz -
-            rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_x;
-        const real rus_J_3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_2 - rus_J_3_t_4);
-        const real rus_J_3_yz = rus_link3_inertia_yz -
-            rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass;
-        const real rus_J_3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_3 - rus_J_3_t_4);
-        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_3_t = inv_rus_platform_joint_offset_x*rus_J_3_yy;
-        const real rus_d_Gamma_3_y = rus_d_Gamma_3_t + rus_h_3_x;
+        const real rus_size_t = rus_joint2_offset_x*rus_joint2_offset_x;
+        const real rus_size_t_2 = rus_platform_joint_offset_x*rus_platform_joint_offset_x;
+        const real rus_size_t_3 = R(5.72469284689e-07) + rus_size_t + rus_size_t_2;
+        const real rus_size = root(rus_size_t_3);
+        /* (rus-h_1) first moment of link 1 about the origin of link 1 */
+        const real rus_h_1_in_spec1_x = rus_link1_centre_of_mass_x*rus_link1_mass;
+        const real rus_h_1_in_spec1_y = rus_link1_centre_of_mass_y*rus_link1_mass;
+        const real rus_h_1_in_spec1_z = rus_link1_centre_of_mass_z*rus_link1_mass;
         /* (rus-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rus_J_1_t = rus_link1_centre_of_mass_z*rus_link1_centre_of_mass_z;
         const real rus_J_1_t_2 = rus_J_1_t + rus_link1_centre_of_mass_x*rus_link1_centre_of_mass_x
             + rus_link1_centre_of_mass_y*rus_link1_centre_of_mass_y;
-        const real rus_J_1_zz = rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t - rus_J_1_t_2);
+        const real rus_J_1_in_spec1_zz = rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t -
+            rus_J_1_t_2);
+        /* (rus-rho_tip_3) connection point to the centre of mass of link 3 */
+        const real rus_rho_tip_3_in_spec3_x = rus_link3_centre_of_mass_x -
+            rus_platform_joint_offset_x;
+        /* (rus-h_3) first moment of link 3 about the connection point */
+        const real rus_h_3_in_spec3_x = rus_link3_mass*rus_rho_tip_3_in_spec3_x;
+        const real rus_h_3_in_spec3_y = rus_link3_centre_of_mass_y*rus_link3_mass;
+        const real rus_h_3_in_spec3_z = rus_link3_centre_of_mass_z*rus_link3_mass;
+        /* (rus-J_3) inertia tensor of link 3 about the connection point */
+        const real rus_J_3_t = R(0.5)*rus_size_t;
+        const real rus_J_3_t_2 = R(0.5)*rus_size_t_2;
+        const real inv_rus_size_t = 1/rus_size_t;
+        const real inv_rus_size_t_2 = 1/rus_size_t_2;
+        const real rus_J_3_t_3 = rus_rho_tip_3_in_spec3_x*rus_rho_tip_3_in_spec3_x;
+        const real rus_J_3_t_4 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y;
+        const real rus_J_3_t_5 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z;
+        const real rus_J_3_t_6 = rus_J_3_t_3 + rus_J_3_t_4 + rus_J_3_t_5;
+        const real rus_J_3_in_spec3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t_3 -
+            rus_J_3_t_6);
+        const real rus_J_3_in_spec3_xy = rus_link3_inertia_xy -
+            rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_in_spec3_x;
+        const real rus_J_3_in_spec3_xz = rus_link3_inertia_xz -
+            rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_in_spec3_x;
+        const real rus_J_3_in_spec3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_4 -
+            rus_J_3_t_6);
+        const real rus_J_3_in_spec3_yz = rus_link3_inertia_yz -
+            rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass;
+        const real rus_J_3_in_spec3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_5 -
+            rus_J_3_t_6);
+        /* (rus-rho2_1) squared amplitude */
+        const real rus_rho2_1_t = rus_size*rus_size*rus_size_t_3;
+        /* (rus-w_3) reciprocal vector 3 */
+        const real rus_w_3_in_axes3_y = 1/rus_platform_joint_offset_x;
+        /* (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real rus_d_phi_3_in_axes3_xy = rus_h_3_in_spec3_z*rus_w_3_in_axes3_y;
+        /* (rus-trace_J_3) half the trace of that inertia tensor */
+        const real rus_trace_J_3 = R(0.5)*rus_J_3_in_spec3_xx + R(0.5)*rus_J_3_in_spec3_yy +
+            R(0.5)*rus_J_3_in_spec3_zz;
+        /* (rus-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real rus_Sigma_3_in_axes3_xx = rus_trace_J_3 - rus_J_3_in_spec3_xx;
+        const real rus_Sigma_3_in_axes3_yy = rus_trace_J_3 - rus_J_3_in_spec3_zz;
+        const real rus_Sigma_3_in_axes3_zz = rus_trace_J_3 - rus_J_3_in_spec3_yy;
+        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real rus_d_Gamma_3_t = rus_J_3_in_spec3_yy*rus_w_3_in_axes3_y;
+        const real rus_d_Gamma_3_in_axes3_y = rus_d_Gamma_3_t + rus_h_3_in_spec3_x;
+        /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rus_mu_1_t = gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx +
+            gravity_z*rus_base_frame_zx;
+        const real rus_mu_1_t_2 = gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy +
+            gravity_z*rus_base_frame_zy;
+        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rus_rho2_1_t = 1/rus_rho2_1_t;
+        const real inv_rus_size_t_3 = 1/rus_size_t_3;
+        const real inv_rus_size = 1/rus_size;
         /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rus_d_c_yy = -inv_rus_platform_joint_offset_x*rus_d_Gamma_3_y -
-            inv_rus_platform_joint_offset_x*rus_h_3_x;
-        /* (rus-trace_J_3) half the trace of that inertia tensor */
-        const real rus_trace_J_3 = R(0.5)*rus_J_3_xx + R(0.5)*rus_J_3_yy + R(0.5)*rus_J_3_zz;
-        /* (rus-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real rus_Sigma_3_xx = rus_trace_J_3 - rus_J_3_xx;
-        const real rus_Sigma_3_yy = rus_trace_J_3 - rus_J_3_zz;
-        const real rus_Sigma_3_zz = rus_trace_J_3 - rus_J_3_yy;
-        /* (rus-h_1) first moment of link 1 about the origin of link 1 */
-        const real rus_h_1_x = rus_link1_centre_of_mass_x*rus_link1_mass;
-        const real rus_h_1_y = rus_link1_centre_of_mass_y*rus_link1_mass;
-        const real rus_h_1_z = rus_link1_centre_of_mass_z*rus_link1_mass;
-        /* (rus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real rus_g_r0_x = gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx +
-            gravity_z*rus_base_frame_zx;
-        const real rus_g_r0_y = gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy +
-            gravity_z*rus_base_frame_zy;
-        const real rus_g_r0_z = gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz +
-            gravity_z*rus_base_frame_zz;
+        const real rus_d_c_in_axes3_yy = -rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_y -
+            rus_h_3_in_spec3_x*rus_w_3_in_axes3_y;
         /* (h_star) first moment about the platform origin */
         const real rus_h_star_t = rus_link3_mass*rus_platform_point_x;
         const real rus_h_star_t_2 = rus_link3_mass*rus_platform_point_y;
         const real rus_h_star_t_3 = rus_link3_mass*rus_platform_point_z;
         /* (potential) potential energy */
-        const real rus_b_r0_x = rus_base_frame_xx*rus_base_point_x +
+        const real rus_g_in_axes1_z = gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz +
+            gravity_z*rus_base_frame_zz;
+        const real rus_potential_t = rus_base_frame_xx*rus_base_point_x +
             rus_base_frame_yx*rus_base_point_y + rus_base_frame_zx*rus_base_point_z;
-        const real rus_b_r0_y = rus_base_frame_xy*rus_base_point_x +
+        const real rus_potential_t_2 = rus_base_frame_xy*rus_base_point_x +
             rus_base_frame_yy*rus_base_point_y + rus_base_frame_zy*rus_base_point_z;
-        const real rus_potential_t = rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
+        const real rus_potential_t_3 = rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
             rus_base_frame_yz*rus_base_point_y + rus_base_frame_zz*rus_base_point_z);
-        /* (rus-rho2_1) squared amplitude */
-        const real inv_rus_rho2_1_t_4 = 1/rus_rho2_1_t;
-        /* (rus-rho2_2) squared amplitude */
-        const real inv_rus_size_t = 1/rus_size_t;
-        /* (rus-w_1) reciprocal vector 1 */
-        const real inv_rus_size = 1/rus_size;
-        model->inv_rus_Kd_1_t_6[leg] = inv_rus_Kd_1_t_6;
-        model->inv_rus_Kd_1_t_8[leg] = inv_rus_Kd_1_t_8;
-        model->inv_rus_platform_joint_offset_x[leg] = inv_rus_platform_joint_offset_x;
-        model->inv_rus_rho2_1_t_4[leg] = inv_rus_rho2_1_t_4;
+        model->inv_rus_rho2_1_t[leg] = inv_rus_rho2_1_t;
         model->inv_rus_size[leg] = inv_rus_size;
         model->inv_rus_size_t[leg] = inv_rus_size_t;
-        model->rus_J_1_zz[leg] = rus_J_1_zz;
-        model->rus_J_3_xx[leg] = rus_J_3_xx;
-        model->rus_J_3_xy[leg] = rus_J_3_xy;
-        model->rus_J_3_xz[leg] = rus_J_3_xz;
-        model->rus_J_3_yz[leg] = rus_J_3_yz;
-        model->rus_J_3_zz[leg] = rus_J_3_zz;
-        model->rus_Kd_1_t_2[leg] = rus_Kd_1_t_2;
-        model->rus_Kd_1_t_4[leg] = rus_Kd_1_t_4;
-        model->rus_Sigma_3_xx[leg] = rus_Sigma_3_xx;
-        model->rus_Sigma_3_yy[leg] = rus_Sigma_3_yy;
-        model->rus_Sigma_3_zz[leg] = rus_Sigma_3_zz;
-        model->rus_b_r0_x[leg] = rus_b_r0_x;
-        model->rus_b_r0_y[leg] = rus_b_r0_y;
+        model->inv_rus_size_t_2[leg] = inv_rus_size_t_2;
+        model->inv_rus_size_t_3[leg] = inv_rus_size_t_3;
+        model->rus_J_1_in_spec1_zz[leg] = rus_J_1_in_spec1_zz;
+        model->rus_J_3_in_spec3_xx[leg] = rus_J_3_in_spec3_xx;
+        model->rus_J_3_in_spec3_xy[leg] = rus_J_3_in_spec3_xy;
+        model->rus_J_3_in_spec3_xz[leg] = rus_J_3_in_spec3_xz;
+        model->rus_J_3_in_spec3_yz[leg] = rus_J_3_in_spec3_yz;
+        model->rus_J_3_in_spec3_zz[leg] = rus_J_3_in_spec3_zz;
+        model->rus_J_3_t[leg] = rus_J_3_t;
+        model->rus_J_3_t_2[leg] = rus_J_3_t_2;
+        model->rus_Sigma_3_in_axes3_xx[leg] = rus_Sigma_3_in_axes3_xx;
+        model->rus_Sigma_3_in_axes3_yy[leg] = rus_Sigma_3_in_axes3_yy;
+        model->rus_Sigma_3_in_axes3_zz[leg] = rus_Sigma_3_in_axes3_zz;
         model->rus_base_frame_xx[leg] = rus_base_frame_xx;
         model->rus_base_frame_xy[leg] = rus_base_frame_xy;
         model->rus_base_frame_xz[leg] = rus_base_frame_xz;
@@ -679,61 +676,64 @@ int delta_prepare(const delta_params *params, delta_model *model)
         model->rus_base_point_z[leg] = rus_base_point_z;
         model->rus_branch_1[leg] = rus_branch_1;
         model->rus_branch_2[leg] = rus_branch_2;
+        model->rus_d_Gamma_3_in_axes3_y[leg] = rus_d_Gamma_3_in_axes3_y;
         model->rus_d_Gamma_3_t[leg] = rus_d_Gamma_3_t;
-        model->rus_d_Gamma_3_y[leg] = rus_d_Gamma_3_y;
-        model->rus_d_c_yy[leg] = rus_d_c_yy;
-        model->rus_d_phi_3_t[leg] = rus_d_phi_3_t;
-        model->rus_g_r0_x[leg] = rus_g_r0_x;
-        model->rus_g_r0_y[leg] = rus_g_r0_y;
-        model->rus_g_r0_z[leg] = rus_g_r0_z;
-        model->rus_h_1_x[leg] = rus_h_1_x;
-        model->rus_h_1_y[leg] = rus_h_1_y;
-        model->rus_h_1_z[leg] = rus_h_1_z;
-        model->rus_h_3_x[leg] = rus_h_3_x;
-        model->rus_h_3_y[leg] = rus_h_3_y;
-        model->rus_h_3_z[leg] = rus_h_3_z;
+        model->rus_d_c_in_axes3_yy[leg] = rus_d_c_in_axes3_yy;
+        model->rus_d_phi_3_in_axes3_xy[leg] = rus_d_phi_3_in_axes3_xy;
+        model->rus_g_in_axes1_z[leg] = rus_g_in_axes1_z;
+        model->rus_h_1_in_spec1_x[leg] = rus_h_1_in_spec1_x;
+        model->rus_h_1_in_spec1_y[leg] = rus_h_1_in_spec1_y;
+        model->rus_h_1_in_spec1_z[leg] = rus_h_1_in_spec1_z;
+        model->rus_h_3_in_spec3_x[leg] = rus_h_3_in_spec3_x;
+        model->rus_h_3_in_spec3_y[leg] = rus_h_3_in_spec3_y;
+        model->rus_h_3_in_spec3_z[leg] = rus_h_3_in_spec3_z;
         model->rus_joint2_offset_x[leg] = rus_joint2_offset_x;
         model->rus_link1_mass[leg] = rus_link1_mass;
         model->rus_link3_mass[leg] = rus_link3_mass;
+        model->rus_mu_1_t[leg] = rus_mu_1_t;
+        model->rus_mu_1_t_2[leg] = rus_mu_1_t_2;
         model->rus_platform_joint_offset_x[leg] = rus_platform_joint_offset_x;
         model->rus_platform_point_x[leg] = rus_platform_point_x;
         model->rus_platform_point_y[leg] = rus_platform_point_y;
         model->rus_platform_point_z[leg] = rus_platform_point_z;
         model->rus_potential_t[leg] = rus_potential_t;
+        model->rus_potential_t_2[leg] = rus_potential_t_2;
+        model->rus_potential_t_3[leg] = rus_potential_t_3;
         model->rus_rho2_1_t[leg] = rus_rho2_1_t;
         model->rus_size[leg] = rus_size;
-        model->rus_size_t[leg] = rus_size_t;
-        total_rus += leg < 3 ? rus_link3_mass : 0;
-        total_rus_x += leg < 3 ? rus_h_star_t : 0;
-        total_rus_y += leg < 3 ? rus_h_star_t_2 : 0;
-        total_rus_z += leg < 3 ? rus_h_star_t_3 : 0;
-        total_rus_x_2 += leg < 3 ? rus_platform_point_x : 0;
-        total_rus_y_2 += leg < 3 ? rus_platform_point_y : 0;
-        total_rus_z_2 += leg < 3 ? rus_platform_point_z : 0;
-        total_rus_2 += leg < 3 ? rus_size_t : 0;
+        model->rus_size_t_3[leg] = rus_size_t_3;
+        model->rus_w_3_in_axes3_y[leg] = rus_w_3_in_axes3_y;
+        m_star_rus += leg < 3 ? rus_link3_mass : 0;
+        h_star_rus_in_platform_x += leg < 3 ? rus_h_star_t : 0;
+        h_star_rus_in_platform_y += leg < 3 ? rus_h_star_t_2 : 0;
+        h_star_rus_in_platform_z += leg < 3 ? rus_h_star_t_3 : 0;
+        b_c_rus_in_platform_x += leg < 3 ? rus_platform_point_x : 0;
+        b_c_rus_in_platform_y += leg < 3 ? rus_platform_point_y : 0;
+        b_c_rus_in_platform_z += leg < 3 ? rus_platform_point_z : 0;
+        legs_size_rus += leg < 3 ? rus_size_t_3 : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_rus;
-    /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = gravity_x*m_star;
-    const real Z_p_y = gravity_y*m_star;
-    const real Z_p_z = gravity_z*m_star;
+    const real m_star = m_star_rus + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_rus_x;
-    const real h_star_y = h_star_t_2 + total_rus_y;
-    const real h_star_z = h_star_t_3 + total_rus_z;
+    const real h_star_x = h_star_rus_in_platform_x + h_star_t;
+    const real h_star_y = h_star_rus_in_platform_y + h_star_t_2;
+    const real h_star_z = h_star_rus_in_platform_z + h_star_t_3;
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = -gravity_x*m_star;
+    const real Z_p_y = -gravity_y*m_star;
+    const real Z_p_z = -gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_rus_x_2;
-    const real b_c_y = R(0.3333333333333333)*total_rus_y_2;
-    const real b_c_z = R(0.3333333333333333)*total_rus_z_2;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rus_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rus_in_platform_y;
+    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rus_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_rus_2);
+    const real legs_size = root(legs_size_rus)*spread_t;
     model->Z_p_x = Z_p_x;
     model->Z_p_y = Z_p_y;
     model->Z_p_z = Z_p_z;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
@@ -1162,352 +1162,362 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
+        /* (rus-J_3) inertia tensor of link 3 about the connection point */
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
+        const real rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
+        const real rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
-        /* (rus-px_1) component along the reference direction */
+        const real rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z;
+        const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
+            rus_J_3_t_5*rus_J_3_t_5;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_J_3_t_8 = rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx;
         const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-py_1) component across the reference direction */
+        const real rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x;
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
+        const real rus_J_3_t_10 = rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy;
+        const real rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x;
+        const real rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9;
+        const real rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7;
         const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
+        const real rus_J_3_t_14 = root(rus_J_3_t_13)*rus_branch_1;
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x;
         const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
+        const real rus_J_3_t_16 = rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
+            rus_J_3_t_5*rus_base_frame_zz;
+        const real rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
             rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17;
         const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
+        const real rus_J_3_t_19 = root(rus_J_3_t_18)*rus_branch_2;
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
+        const real rus_e_1_in_axes3_y =
+            -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x;
+        const real rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_J_3_in_axes2_xz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y;
+        const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
+        const real rus_J_3_in_axes1_zz =
+            rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
+            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
+        const real inv_rus_J_3_t_12 = 1/rus_J_3_t_12;
+        const real rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 -
+            rus_J_3_t_11*rus_J_3_t_14);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        const real rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 +
+            rus_J_3_t_14*rus_J_3_t_9);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_J_3_t_18 = 1/rus_J_3_t_18;
+        const real rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_z = rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t +
+            rus_e_1_in_axes3_y*rus_r_1_in_axes1_z) -
+            rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
+            rus_e_1_in_axes3_y*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_e_1_in_axes3_x*rus_s_2;
+        const real rus_w_1_t_4 = rus_c_2*rus_e_1_in_axes3_x;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_e_1_in_axes3_y;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_e_1_in_axes3_y;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_e_1_in_axes3_y;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
+        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
+        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
         /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
-        const real rus_w_2_t = inv_rus_r_1_t*inv_rus_v_1_t*rus_v_1_z;
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
         /* (rus-w_3) reciprocal vector 3 */
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_w_3_t = inv_rus_platform_joint_offset_x*inv_rus_v_1_t*rus_v_1_t_2;
-        /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rus_d_alpha_3_t = inv_rus_r_1_t*rus_s_3;
-        const real rus_d_alpha_3_t_2 = inv_rus_r_1_t*rus_c_3;
-        /* (rus-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_L_c_3_r0_y = rus_J_3_xy*rus_s_3 + rus_J_3_yz*rus_c_3;
-        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_3_t_2 = inv_rus_r_1_t*rus_L_c_3_r0_y;
-        const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_d_Gamma_3_x = rus_h_3_z - inv_rus_v_1_t*(rus_L_c_3_r0_y +
-            rus_d_Gamma_3_t*rus_v_1_t_2 - rus_d_Gamma_3_t_2*rus_v_1_z);
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_J_3_xx = m->rus_J_3_xx[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_zz = m->rus_J_3_zz[i];
-        const real rus__y = rus_s_3*(rus_J_3_xx*rus_s_3 + rus_J_3_xz*rus_c_3) -
-            rus_c_3*(-rus_J_3_xz*rus_s_3 - rus_J_3_zz*rus_c_3);
-        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_d_Gamma_2_t = rus_c_3*rus_h_3_y;
-        const real rus_d_Gamma_2_t_2 = inv_rus_r_1_t*rus__y;
-        const real rus_d_Gamma_2_t_3 = inv_rus_platform_joint_offset_x*rus_L_c_3_r0_y;
-        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_z;
-        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_2;
-        const real rus_d_Gamma_2_x = -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus__y + rus_d_Gamma_2_t_5
-            - rus_d_Gamma_2_t_4);
-        const real rus_d_Gamma_2_y = rus_d_Gamma_2_t_3 - rus_h_3_y*rus_s_3;
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_d_Gamma_2_z = rus_d_Gamma_2_t_2 + rus_c_3*rus_h_3_x - rus_h_3_z*rus_s_3;
-        /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_d_Gamma_1_x = -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus_J_1_zz + rus__y +
-            rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4);
-        /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rus_d_c_xx = inv_rus_v_1_t*rus_d_Gamma_1_x + rus_d_Gamma_3_x*rus_w_3_t +
-            rus_h_3_z*rus_w_3_t - rus_d_Gamma_2_x*rus_w_2_t - rus_h_3_y*(inv_rus_v_1_t*rus_c_3 -
-            rus_c_3*rus_w_2_t);
-        const real rus_d_Gamma_3_y = m->rus_d_Gamma_3_y[i];
-        const real rus_d_phi_3_t = m->rus_d_phi_3_t[i];
-        const real rus_d_c_xy = inv_rus_v_1_t*rus_d_Gamma_2_y + rus_d_Gamma_3_y*rus_w_3_t -
-            rus_d_phi_3_t - rus_d_Gamma_2_y*rus_w_2_t;
-        const real rus_d_c_xz = inv_rus_v_1_t*rus_d_Gamma_2_z + rus_d_Gamma_3_t_2*rus_w_3_t +
-            rus_d_alpha_3_t_2*rus_h_3_y - rus_d_Gamma_2_z*rus_w_2_t;
-        const real rus_d_c_yz = rus_d_alpha_3_t*rus_h_3_y -
-            inv_rus_platform_joint_offset_x*rus_d_Gamma_3_t_2;
-        /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rus_d_c_yy = m->rus_d_c_yy[i];
-        const real rus_Q_t = rus_d_c_xx - rus_d_c_yy;
-        const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-        const real rus_Q_t_3 = rus_d_c_xx + inv_rus_r_1_t*rus_d_Gamma_2_z +
-            rus_d_alpha_3_t_2*rus_h_3_x - rus_d_alpha_3_t*rus_h_3_z;
-        const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-        const real rus_Q_t_5 = axis_x_rus_axes3_x*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_x*rus_d_c_yz - axis_y_rus_axes3_in_base_x*rus_Q_t_2;
-        const real rus_Q_t_6 = axis_x_rus_axes3_y*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_y*rus_d_c_yz - axis_y_rus_axes3_in_base_y*rus_Q_t_2;
-        const real rus_Q_t_7 = axis_x_rus_axes3_z*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_z*rus_d_c_yz - axis_y_rus_axes3_in_base_z*rus_Q_t_2;
-        const real rus_Q_t_8 = axis_z_rus_axes3_in_base_x*rus_Q_t_4 -
-            axis_x_rus_axes3_x*rus_d_c_xz;
-        const real rus_Q_t_9 = axis_z_rus_axes3_in_base_y*rus_Q_t_4 -
-            axis_x_rus_axes3_y*rus_d_c_xz;
-        const real rus_Q_t_10 = axis_z_rus_axes3_in_base_z*rus_Q_t_4 -
-            axis_x_rus_axes3_z*rus_d_c_xz;
-        const real rus_Q_t_11 = axis_y_rus_axes3_in_base_x*rus_Q_t_5 -
-            axis_z_rus_axes3_in_base_x*rus_Q_t_8;
-        const real rus_Q_t_12 = 2*rus_Q_t_11 + rus_d_c_xx;
-        const real rus_Q_t_13 = axis_y_rus_axes3_in_base_x*rus_Q_t_6 +
-            axis_y_rus_axes3_in_base_y*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_9 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_8;
-        const real rus_Q_t_14 = axis_y_rus_axes3_in_base_x*rus_Q_t_7 +
-            axis_y_rus_axes3_in_base_z*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_10 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_8;
-        const real rus_Q_t_15 = axis_y_rus_axes3_in_base_y*rus_Q_t_6 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_9;
-        const real rus_Q_t_16 = 2*rus_Q_t_15 + rus_d_c_xx;
-        const real rus_Q_t_17 = axis_y_rus_axes3_in_base_y*rus_Q_t_7 +
-            axis_y_rus_axes3_in_base_z*rus_Q_t_6 - axis_z_rus_axes3_in_base_y*rus_Q_t_10 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_9;
-        const real rus_Q_t_18 = axis_y_rus_axes3_in_base_z*rus_Q_t_7 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_10;
-        const real rus_Q_t_19 = 2*rus_Q_t_18 + rus_d_c_xx;
-        /* (rus-qd_3) rate of joint 3 */
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y;
+        /* (rus-qd_1) rate of joint 1 */
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x +
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
             axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*t_dot_x +
-            axis_y_rus_axes3_in_base_y*t_dot_y + axis_y_rus_axes3_in_base_z*t_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*t_dot_x +
-            axis_z_rus_axes3_in_base_y*t_dot_y + axis_z_rus_axes3_in_base_z*t_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
-        /* (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3;
-        const real rus_zeta_3_y = rus_omega_2_t*rus_qd_3;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_t = rus_omega_2_t*rus_omega_2_t;
-        const real rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2;
-        const real rus_W_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
+            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = rus_e_1_in_axes3_x*rus_qd_1;
+        const real rus_omega_1_in_axes3_y = rus_e_1_in_axes3_y*rus_qd_1;
+        /* (rus-omega_2) angular velocity of link 2 */
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes3_y = rus_e_1_in_axes3_y*rus_omega_2_in_axes2_z;
+        /* (rus-W_3) centripetal tensor of link 3 */
+        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_platform_joint_offset_x*rus_zeta_3_y - rus_bias_t*rus_omega_1_t*rus_omega_1_t -
-            rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x +
+            rus_bias_t*rus_e_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+            rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rus_qdd_1_o = inv_rus_v_1_t_2*rus_bias_in_axes3_x;
         /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real rus_qdd_1_o = inv_rus_v_1_t*rus_bias_x;
-        const real rus_qdd_3_o = inv_rus_platform_joint_offset_x*(rus_bias_y -
-            rus_qdd_1_o*rus_v_1_t_2);
+        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y +
+            rus_qdd_1_o*rus_v_1_in_axes3_y);
         /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rus_alpha_2_o_z = rus_qdd_1_o - inv_rus_r_1_t*(rus_bias_z +
-            rus_qdd_1_o*rus_v_1_z);
-        const real rus_alpha_2_o_t = rus_alpha_2_o_z*rus_s_3;
-        const real rus_alpha_2_o_t_2 = rus_alpha_2_o_z*rus_c_3;
+        const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
+            rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z);
+        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x;
+        const real rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_y;
+        /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
+        const real rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z;
         /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real rus_alpha_3_o_x = rus_alpha_2_o_t - rus_zeta_3_x;
-        const real rus_alpha_3_o_y = -rus_alpha_2_o_t_2 - rus_zeta_3_y;
+        const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+        const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
         /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rus_B_3_o_xy = rus_qdd_3_o - rus_W_3_xy;
-        const real rus_B_3_o_yx = -rus_W_3_xy - rus_qdd_3_o;
-        const real rus_B_3_o_zx = rus_zeta_3_y - rus_alpha_3_o_y;
-        const real rus_B_3_o_zy = rus_alpha_3_o_x - rus_zeta_3_x;
-        /* (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
+        const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
+        const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+        const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
+        /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+        const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+        const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rus_g_tip_x = axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y +
-            axis_x_rus_axes3_z*gravity_z;
-        const real rus_g_tip_y = axis_y_rus_axes3_in_base_x*gravity_x +
-            axis_y_rus_axes3_in_base_y*gravity_y + axis_y_rus_axes3_in_base_z*gravity_z;
-        const real rus_g_tip_z = axis_z_rus_axes3_in_base_x*gravity_x +
-            axis_z_rus_axes3_in_base_y*gravity_y + axis_z_rus_axes3_in_base_z*gravity_z;
-        /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real rus_Sigma_3_yy = m->rus_Sigma_3_yy[i];
-        const real rus_Sigma_3_zz = m->rus_Sigma_3_zz[i];
-        const real rus_mu_3_o_x = rus_B_3_o_yx*rus_J_3_xy + rus_B_3_o_zx*rus_J_3_xz +
-            rus_B_3_o_zy*rus_Sigma_3_yy + rus_Sigma_3_zz*rus_alpha_2_o_t + rus_g_tip_y*rus_h_3_y +
-            rus_g_tip_z*rus_h_3_z - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3);
-        const real rus_Sigma_3_xx = m->rus_Sigma_3_xx[i];
-        const real rus_mu_3_o_y = rus_B_3_o_xy*rus_J_3_yz + rus_g_tip_z*rus_h_3_x -
-            rus_B_3_o_zx*rus_Sigma_3_xx - rus_B_3_o_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t -
-            rus_W_3_t_3) - rus_Sigma_3_zz*rus_alpha_2_o_t_2 - rus_g_tip_x*rus_h_3_y;
-        const real rus_mu_3_o_z = rus_B_3_o_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_o_t +
-            rus_J_3_yz*rus_alpha_2_o_t_2 - rus_B_3_o_xy*rus_Sigma_3_yy - rus_J_3_xz*(rus_W_3_t -
-            rus_W_3_t_2) - rus_g_tip_x*rus_h_3_z - rus_g_tip_y*rus_h_3_x;
-        const real rus_mu_3_o_r0_y = rus_mu_3_o_x*rus_s_3 - rus_c_3*rus_mu_3_o_y;
+        const real rus_g_in_axes3_x = axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y
+            + axis_x_rus_axes3_z*gravity_z;
+        const real rus_g_in_axes3_y = axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y
+            + axis_y_rus_axes3_z*gravity_z;
+        const real rus_g_in_axes3_z = axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y
+            + axis_z_rus_axes3_z*gravity_z;
+        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy +
+            rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
+            rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x + rus_g_in_axes3_y*rus_h_3_in_spec3_y
+            + rus_g_in_axes3_z*rus_h_3_in_spec3_z - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2 -
+            rus_mu_3_o_t_3);
+        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y + rus_g_in_axes3_z*rus_h_3_in_spec3_x
+            - rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
+            rus_mu_3_o_t_3) - rus_g_in_axes3_x*rus_h_3_in_spec3_y;
+        const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x -
+            rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
+            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
+            rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x;
+        const real rus_mu_3_o_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x +
+            rus_e_1_in_axes3_y*rus_mu_3_o_in_axes3_y;
+        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z;
+        const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
+        const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
+            inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz - rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z -
+            rus_d_Gamma_3_t*rus_v_1_in_axes3_y);
+        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
+        const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y;
+        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
+        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y;
+        const real rus_d_Gamma_2_in_axes3_x = rus_d_Gamma_2_t -
+            inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 - rus_d_Gamma_2_t_5);
+        const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
+        const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_e_1_in_axes3_y*rus_h_3_in_spec3_x;
         /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_mu_1_o_z = rus_J_1_zz*rus_qdd_1_o + rus_h_1_y*(rus_c_1*rus_g_r0_x +
-            rus_g_r0_y*rus_s_1) - rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+        const real rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o +
+            rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
+            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
         /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rus_N_1_o_z = rus_mu_1_o_z + rus_mu_3_o_r0_y;
+        const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
+        /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rus_d_Gamma_1_in_axes3_x = rus_d_Gamma_2_t -
+            inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 -
+            rus_d_Gamma_2_t_5);
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rus_G_o_t = inv_rus_r_1_t*rus_mu_3_o_r0_y;
-        const real rus_G_o_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_o_z;
+        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
+        /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
+            rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+            rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
+            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
+            inv_rus_v_1_t_2*rus_e_1_in_axes3_y) - rus_h_3_in_spec3_z*rus_w_3_in_axes3_x;
+        const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
+        const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
+        const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
+            rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
+            rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x;
+        const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y;
+        const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rus_c_o_x = inv_rus_v_1_t*(rus_N_1_o_z + rus_G_o_t_2*rus_v_1_t_2 -
-            rus_G_o_t*rus_v_1_z) + rus_B_3_o_xy*rus_h_3_z + rus_alpha_2_o_t_2*rus_h_3_y +
-            rus_h_3_x*(rus_W_3_t_2 + rus_W_3_t_3);
-        const real rus_c_o_y = rus_alpha_2_o_t*rus_h_3_y - rus_G_o_t_2 - rus_B_3_o_yx*rus_h_3_x -
-            rus_h_3_z*(rus_W_3_t + rus_W_3_t_3);
-        const real rus_c_o_z = rus_B_3_o_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) -
-            rus_G_o_t - rus_B_3_o_zx*rus_h_3_x;
+        const real rus_c_o_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
+            rus_G_o_in_axes3_y*rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) +
+            rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
+            rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x -
+            rus_h_3_in_spec3_z*(rus_mu_3_o_t + rus_mu_3_o_t_3);
+        const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_y*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
+            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x;
+        /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
+        const real rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
+        const real rus_Q_t_2 = R(0.5)*rus_Q_t;
+        const real rus_Q_t_3 = rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
+            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x;
+        const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
+        const real rus_Q_t_5 = axis_x_rus_axes3_x*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_x*rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
+        const real rus_Q_t_6 = axis_x_rus_axes3_y*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_y*rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
+        const real rus_Q_t_7 = axis_x_rus_axes3_z*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_z*rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
+        const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
+            axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
+            axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
+            axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
+        const real rus_Q_xx = -2*rus_Q_t_11 - rus_d_c_in_axes3_xx;
+        const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
+            axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
+        const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
+            axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
+        const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
+        const real rus_Q_yy = -2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
+        const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
+            axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
+        const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
+        const real rus_Q_zz = -2*rus_Q_t_13 - rus_d_c_in_axes3_xx;
         /* (rus-U) velocity and gravity terms of the leg force */
-        const real rus_U_in_base_x = -axis_x_rus_axes3_x*rus_c_o_x -
-            axis_y_rus_axes3_in_base_x*rus_c_o_y - axis_z_rus_axes3_in_base_x*rus_c_o_z;
-        const real rus_U_in_base_y = -axis_x_rus_axes3_y*rus_c_o_x -
-            axis_y_rus_axes3_in_base_y*rus_c_o_y - axis_z_rus_axes3_in_base_y*rus_c_o_z;
-        const real rus_U_in_base_z = -axis_x_rus_axes3_z*rus_c_o_x -
-            axis_y_rus_axes3_in_base_z*rus_c_o_y - axis_z_rus_axes3_in_base_z*rus_c_o_z;
+        const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
+        const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
+        const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_xx : rus_Q_xx;  /* M_tt_rus_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_xy : rus_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_xz : rus_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_yy : rus_Q_yy;  /* M_tt_rus_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_yz : rus_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_zz : rus_Q_zz;  /* M_tt_rus_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + rus_U_x : rus_U_x;  /* Z_t_rus_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rus_U_y : rus_U_y;  /* Z_t_rus_y */
+        terms[8*count + k] = add ? terms[8*count + k] + rus_U_z : rus_U_z;  /* Z_t_rus_z */
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t;
-        const real rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t;
-        const real rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t;
-        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_t_12 : rus_Q_t_12;  /* total_rus_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_t_13 : rus_Q_t_13;  /* total_rus_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_t_14 : rus_Q_t_14;  /* total_rus_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_t_16 : rus_Q_t_16;  /* total_rus_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_t_17 : rus_Q_t_17;  /* total_rus_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_t_19 : rus_Q_t_19;  /* total_rus_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rus_U_in_base_x : rus_U_in_base_x;  /* total_rus_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rus_U_in_base_y : rus_U_in_base_y;  /* total_rus_y */
-        terms[8*count + k] = add ? terms[8*count + k] + rus_U_in_base_z : rus_U_in_base_z;  /* total_rus_z */
-        o[0*count + k] = -rus_w_1_t_3;
-        o[1*count + k] = -rus_w_1_t_4;
-        o[2*count + k] = -rus_w_1_t_5;
-        o[5*count + k] = rus_w_1_t_3 + (rus_w_1_t_4 + rus_w_1_t_5);
+        o[0*count + k] = -rus_w_1_t_7;
+        o[1*count + k] = -rus_w_1_t_8;
+        o[2*count + k] = -rus_w_1_t_9;
+        o[5*count + k] = rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+        o[4*count + k] = UNLESS(magnitude(rus_J_3_t_12) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(rus_J_3_t_18) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[3*count + k] = UNLESS(rus_J_3_t_13 >= 0);
     }
 }
 
@@ -1529,40 +1539,42 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rus_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rus_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rus_xx;
-        const real total_rus_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_rus_yy;
-        const real total_rus_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_rus_zz;
+        const real M_tt_xx = M_tt_rus_xx + m_star;
+        const real M_tt_rus_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_rus_yy + m_star;
+        const real M_tt_rus_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_rus_zz + m_star;
         /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
-        const real total_rus_x = sums[6*w + k];
-        const real Z_t_x = total_rus_x - Z_p_x;
+        const real Z_t_rus_x = sums[6*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rus_x;
         const real Z_p_y = m->Z_p_y;
-        const real total_rus_y = sums[7*w + k];
-        const real Z_t_y = total_rus_y - Z_p_y;
+        const real Z_t_rus_y = sums[7*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rus_y;
         const real Z_p_z = m->Z_p_z;
-        const real total_rus_z = sums[8*w + k];
-        const real Z_t_z = total_rus_z - Z_p_z;
+        const real Z_t_rus_z = sums[8*w + k];
+        const real Z_t_z = Z_p_z + Z_t_rus_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rus_xy = sums[1*w + k];
-        M[1*w + k] = -total_rus_xy;
-        M[3*w + k] = -total_rus_xy;
-        const real total_rus_xz = sums[2*w + k];
-        M[2*w + k] = -total_rus_xz;
-        M[6*w + k] = -total_rus_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[6*w + k] = M_tt_xz;
         M[4*w + k] = M_tt_yy;
-        const real total_rus_yz = sums[4*w + k];
-        M[5*w + k] = -total_rus_yz;
-        M[7*w + k] = -total_rus_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[5*w + k] = M_tt_yz;
+        M[7*w + k] = M_tt_yz;
         M[8*w + k] = M_tt_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
-        t->total[k] += ((M_tt_xx + total_rus_xy) + (total_rus_xz + M_tt_yy)) + ((total_rus_yz +
-            M_tt_zz) + (Z_t_x + (Z_t_y + Z_t_z)));
+        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_xz + M_tt_yy)) + ((M_tt_yz + M_tt_zz) + (Z_t_x
+            + (Z_t_y + Z_t_z)));
     }
 }
 
@@ -1617,228 +1629,222 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
+        /* (rus-J_3) inertia tensor of link 3 about the connection point */
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
+        const real rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
+        const real rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
-        /* (rus-px_1) component along the reference direction */
+        const real rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z;
+        const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
+            rus_J_3_t_5*rus_J_3_t_5;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_J_3_t_8 = rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx;
         const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-py_1) component across the reference direction */
+        const real rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x;
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
+        const real rus_J_3_t_10 = rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy;
+        const real rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x;
+        const real rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9;
+        const real rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7;
         const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
+        const real rus_J_3_t_14 = root(rus_J_3_t_13)*rus_branch_1;
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x;
         const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
+        const real rus_J_3_t_16 = rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
+            rus_J_3_t_5*rus_base_frame_zz;
+        const real rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
             rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17;
         const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
+        const real rus_J_3_t_19 = root(rus_J_3_t_18)*rus_branch_2;
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
+        const real rus_e_1_in_axes3_y =
+            -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x;
+        const real rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_J_3_in_axes2_xz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y;
+        const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
+        const real rus_J_3_in_axes1_zz =
+            rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
+            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
+        const real inv_rus_J_3_t_12 = 1/rus_J_3_t_12;
+        const real rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 -
+            rus_J_3_t_11*rus_J_3_t_14);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        const real rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 +
+            rus_J_3_t_14*rus_J_3_t_9);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_J_3_t_18 = 1/rus_J_3_t_18;
+        const real rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_z = rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t +
+            rus_e_1_in_axes3_y*rus_r_1_in_axes1_z) -
+            rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
+            rus_e_1_in_axes3_y*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
         /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
-        const real rus_w_2_t = inv_rus_r_1_t*inv_rus_v_1_t*rus_v_1_z;
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
         /* (rus-w_3) reciprocal vector 3 */
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_w_3_t = inv_rus_platform_joint_offset_x*inv_rus_v_1_t*rus_v_1_t_2;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y;
         /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rus_d_alpha_3_t = inv_rus_r_1_t*rus_s_3;
-        const real rus_d_alpha_3_t_2 = inv_rus_r_1_t*rus_c_3;
-        /* (rus-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_L_c_3_r0_y = rus_J_3_xy*rus_s_3 + rus_J_3_yz*rus_c_3;
+        const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
+        const real rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z;
         /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real rus_d_Gamma_3_t_2 = inv_rus_r_1_t*rus_L_c_3_r0_y;
+        const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z;
         const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_d_Gamma_3_x = rus_h_3_z - inv_rus_v_1_t*(rus_L_c_3_r0_y +
-            rus_d_Gamma_3_t*rus_v_1_t_2 - rus_d_Gamma_3_t_2*rus_v_1_z);
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_J_3_xx = m->rus_J_3_xx[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_zz = m->rus_J_3_zz[i];
-        const real rus__y = rus_s_3*(rus_J_3_xx*rus_s_3 + rus_J_3_xz*rus_c_3) -
-            rus_c_3*(-rus_J_3_xz*rus_s_3 - rus_J_3_zz*rus_c_3);
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
+            inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz - rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z -
+            rus_d_Gamma_3_t*rus_v_1_in_axes3_y);
         /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_d_Gamma_2_t = rus_c_3*rus_h_3_y;
-        const real rus_d_Gamma_2_t_2 = inv_rus_r_1_t*rus__y;
-        const real rus_d_Gamma_2_t_3 = inv_rus_platform_joint_offset_x*rus_L_c_3_r0_y;
-        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_z;
-        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_2;
-        const real rus_d_Gamma_2_x = -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus__y + rus_d_Gamma_2_t_5
-            - rus_d_Gamma_2_t_4);
-        const real rus_d_Gamma_2_y = rus_d_Gamma_2_t_3 - rus_h_3_y*rus_s_3;
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_d_Gamma_2_z = rus_d_Gamma_2_t_2 + rus_c_3*rus_h_3_x - rus_h_3_z*rus_s_3;
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
+        const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y;
+        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
+        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y;
+        const real rus_d_Gamma_2_in_axes3_x = rus_d_Gamma_2_t -
+            inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 - rus_d_Gamma_2_t_5);
+        const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_e_1_in_axes3_y*rus_h_3_in_spec3_x;
         /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_d_Gamma_1_x = -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus_J_1_zz + rus__y +
-            rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_d_Gamma_1_in_axes3_x = rus_d_Gamma_2_t -
+            inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 -
+            rus_d_Gamma_2_t_5);
         /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rus_d_c_xx = inv_rus_v_1_t*rus_d_Gamma_1_x + rus_d_Gamma_3_x*rus_w_3_t +
-            rus_h_3_z*rus_w_3_t - rus_d_Gamma_2_x*rus_w_2_t - rus_h_3_y*(inv_rus_v_1_t*rus_c_3 -
-            rus_c_3*rus_w_2_t);
-        const real rus_d_Gamma_3_y = m->rus_d_Gamma_3_y[i];
-        const real rus_d_phi_3_t = m->rus_d_phi_3_t[i];
-        const real rus_d_c_xy = inv_rus_v_1_t*rus_d_Gamma_2_y + rus_d_Gamma_3_y*rus_w_3_t -
-            rus_d_phi_3_t - rus_d_Gamma_2_y*rus_w_2_t;
-        const real rus_d_c_xz = inv_rus_v_1_t*rus_d_Gamma_2_z + rus_d_Gamma_3_t_2*rus_w_3_t +
-            rus_d_alpha_3_t_2*rus_h_3_y - rus_d_Gamma_2_z*rus_w_2_t;
-        const real rus_d_c_yz = rus_d_alpha_3_t*rus_h_3_y -
-            inv_rus_platform_joint_offset_x*rus_d_Gamma_3_t_2;
+        const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
+            rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+            rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
+            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
+            inv_rus_v_1_t_2*rus_e_1_in_axes3_y) - rus_h_3_in_spec3_z*rus_w_3_in_axes3_x;
+        const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
+        const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
+        const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
+            rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
+            rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x;
+        const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y;
+        const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rus_d_c_yy = m->rus_d_c_yy[i];
-        const real rus_Q_t = rus_d_c_xx - rus_d_c_yy;
-        const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-        const real rus_Q_t_3 = rus_d_c_xx + inv_rus_r_1_t*rus_d_Gamma_2_z +
-            rus_d_alpha_3_t_2*rus_h_3_x - rus_d_alpha_3_t*rus_h_3_z;
-        const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-        const real rus_Q_t_5 = axis_x_rus_axes3_x*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_x*rus_d_c_yz - axis_y_rus_axes3_in_base_x*rus_Q_t_2;
-        const real rus_Q_t_6 = axis_x_rus_axes3_y*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_y*rus_d_c_yz - axis_y_rus_axes3_in_base_y*rus_Q_t_2;
-        const real rus_Q_t_7 = axis_x_rus_axes3_z*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_z*rus_d_c_yz - axis_y_rus_axes3_in_base_z*rus_Q_t_2;
-        const real rus_Q_t_8 = axis_z_rus_axes3_in_base_x*rus_Q_t_4 -
-            axis_x_rus_axes3_x*rus_d_c_xz;
-        const real rus_Q_t_9 = axis_z_rus_axes3_in_base_y*rus_Q_t_4 -
-            axis_x_rus_axes3_y*rus_d_c_xz;
-        const real rus_Q_t_10 = axis_z_rus_axes3_in_base_z*rus_Q_t_4 -
-            axis_x_rus_axes3_z*rus_d_c_xz;
-        const real rus_Q_t_11 = axis_y_rus_axes3_in_base_x*rus_Q_t_5 -
-            axis_z_rus_axes3_in_base_x*rus_Q_t_8;
-        const real rus_Q_t_12 = 2*rus_Q_t_11 + rus_d_c_xx;
-        const real rus_Q_t_13 = axis_y_rus_axes3_in_base_x*rus_Q_t_6 +
-            axis_y_rus_axes3_in_base_y*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_9 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_8;
-        const real rus_Q_t_14 = axis_y_rus_axes3_in_base_x*rus_Q_t_7 +
-            axis_y_rus_axes3_in_base_z*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_10 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_8;
-        const real rus_Q_t_15 = axis_y_rus_axes3_in_base_y*rus_Q_t_6 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_9;
-        const real rus_Q_t_16 = 2*rus_Q_t_15 + rus_d_c_xx;
-        const real rus_Q_t_17 = axis_y_rus_axes3_in_base_y*rus_Q_t_7 +
-            axis_y_rus_axes3_in_base_z*rus_Q_t_6 - axis_z_rus_axes3_in_base_y*rus_Q_t_10 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_9;
-        const real rus_Q_t_18 = axis_y_rus_axes3_in_base_z*rus_Q_t_7 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_10;
-        const real rus_Q_t_19 = 2*rus_Q_t_18 + rus_d_c_xx;
-        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_t_12 : rus_Q_t_12;  /* total_rus_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_t_13 : rus_Q_t_13;  /* total_rus_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_t_14 : rus_Q_t_14;  /* total_rus_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_t_16 : rus_Q_t_16;  /* total_rus_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_t_17 : rus_Q_t_17;  /* total_rus_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_t_19 : rus_Q_t_19;  /* total_rus_zz */
+        const real rus_Q_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_Q_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy;
+        const real axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy;
+        const real axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy;
+        const real rus_Q_t_3 = rus_e_1_in_axes3_x*rus_s_2;
+        const real rus_Q_t_4 = rus_c_2*rus_e_1_in_axes3_x;
+        const real rus_Q_t_5 = rus_Q_t_3*rus_c_1 + rus_Q_t_4*rus_s_1;
+        const real rus_Q_t_6 = rus_Q_t_3*rus_s_1 - rus_Q_t_4*rus_c_1;
+        const real axis_y_rus_axes3_x = rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy
+            + rus_base_frame_xz*rus_e_1_in_axes3_y;
+        const real axis_y_rus_axes3_y = rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy
+            + rus_base_frame_yz*rus_e_1_in_axes3_y;
+        const real axis_y_rus_axes3_z = rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy
+            + rus_base_frame_zz*rus_e_1_in_axes3_y;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
+        const real rus_Q_t_7 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
+        const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
+        const real rus_Q_t_9 = rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
+            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x;
+        const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
+        const real rus_Q_t_11 = axis_x_rus_axes3_x*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_x*rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
+        const real rus_Q_t_12 = axis_x_rus_axes3_y*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_y*rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
+        const real rus_Q_t_13 = axis_x_rus_axes3_z*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_z*rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
+        const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
+            axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
+            axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
+            axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
+        const real rus_Q_xx = -2*rus_Q_t_17 - rus_d_c_in_axes3_xx;
+        const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
+            axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
+        const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
+            axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
+        const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
+        const real rus_Q_yy = -2*rus_Q_t_18 - rus_d_c_in_axes3_xx;
+        const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
+            axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
+        const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
+        const real rus_Q_zz = -2*rus_Q_t_19 - rus_d_c_in_axes3_xx;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_xx : rus_Q_xx;  /* M_tt_rus_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_xy : rus_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_xz : rus_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_yy : rus_Q_yy;  /* M_tt_rus_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_yz : rus_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_zz : rus_Q_zz;  /* M_tt_rus_zz */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+        o[1*count + k] = UNLESS(magnitude(rus_J_3_t_12) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(rus_J_3_t_18) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
-        o[0*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[0*count + k] = UNLESS(rus_J_3_t_13 >= 0);
     }
 }
 
@@ -1854,27 +1860,27 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rus_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rus_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rus_xx;
-        const real total_rus_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_rus_yy;
-        const real total_rus_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_rus_zz;
+        const real M_tt_xx = M_tt_rus_xx + m_star;
+        const real M_tt_rus_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_rus_yy + m_star;
+        const real M_tt_rus_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_rus_zz + m_star;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rus_xy = sums[1*w + k];
-        M[1*w + k] = -total_rus_xy;
-        M[3*w + k] = -total_rus_xy;
-        const real total_rus_xz = sums[2*w + k];
-        M[2*w + k] = -total_rus_xz;
-        M[6*w + k] = -total_rus_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[6*w + k] = M_tt_xz;
         M[4*w + k] = M_tt_yy;
-        const real total_rus_yz = sums[4*w + k];
-        M[5*w + k] = -total_rus_yz;
-        M[7*w + k] = -total_rus_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[5*w + k] = M_tt_yz;
+        M[7*w + k] = M_tt_yz;
         M[8*w + k] = M_tt_zz;
-        t->total[k] += (M_tt_xx + (total_rus_xy + total_rus_xz)) + (M_tt_yy + (total_rus_yz +
-            M_tt_zz));
+        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
     }
 }
 
@@ -1953,24 +1959,24 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -1980,209 +1986,221 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3;
+        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
         /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
-        /* (rus-qd_3) rate of joint 3 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
+            rus_base_frame_xy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
+            rus_base_frame_yy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
+            rus_base_frame_zy*rus_qd_1_t_2;
+        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
+        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
+            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
+            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
+            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x +
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
             axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*t_dot_x +
-            axis_y_rus_axes3_in_base_y*t_dot_y + axis_y_rus_axes3_in_base_z*t_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*t_dot_x +
-            axis_z_rus_axes3_in_base_y*t_dot_y + axis_z_rus_axes3_in_base_z*t_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
-        /* (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3;
-        const real rus_zeta_3_y = rus_omega_2_t*rus_qd_3;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_t = rus_omega_2_t*rus_omega_2_t;
-        const real rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2;
-        const real rus_W_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
+            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
+        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        /* (rus-omega_2) angular velocity of link 2 */
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
+        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        /* (rus-W_3) centripetal tensor of link 3 */
+        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_platform_joint_offset_x*rus_zeta_3_y - rus_bias_t*rus_omega_1_t*rus_omega_1_t -
-            rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
+            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+            rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rus_qdd_1_o = inv_rus_v_1_t_2*rus_bias_in_axes3_x;
         /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real rus_qdd_1_o = inv_rus_v_1_t*rus_bias_x;
-        const real rus_qdd_3_o = inv_rus_platform_joint_offset_x*(rus_bias_y -
-            rus_qdd_1_o*rus_v_1_t_2);
+        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y +
+            rus_qdd_1_o*rus_v_1_in_axes3_y);
         /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rus_alpha_2_o_z = rus_qdd_1_o - inv_rus_r_1_t*(rus_bias_z +
-            rus_qdd_1_o*rus_v_1_z);
-        const real rus_alpha_2_o_t = rus_alpha_2_o_z*rus_s_3;
-        const real rus_alpha_2_o_t_2 = rus_alpha_2_o_z*rus_c_3;
+        const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
+            rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z);
+        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_s_3;
+        const real rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_c_3;
         /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real rus_alpha_3_o_x = rus_alpha_2_o_t - rus_zeta_3_x;
-        const real rus_alpha_3_o_y = -rus_alpha_2_o_t_2 - rus_zeta_3_y;
+        const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+        const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
         /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rus_B_3_o_xy = rus_qdd_3_o - rus_W_3_xy;
-        const real rus_B_3_o_yx = -rus_W_3_xy - rus_qdd_3_o;
-        const real rus_B_3_o_zx = rus_zeta_3_y - rus_alpha_3_o_y;
-        const real rus_B_3_o_zy = rus_alpha_3_o_x - rus_zeta_3_x;
-        /* (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
+        const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
+        const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+        const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
+        /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+        const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+        const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rus_g_tip_x = axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y +
-            axis_x_rus_axes3_z*gravity_z;
-        const real rus_g_tip_y = axis_y_rus_axes3_in_base_x*gravity_x +
-            axis_y_rus_axes3_in_base_y*gravity_y + axis_y_rus_axes3_in_base_z*gravity_z;
-        const real rus_g_tip_z = axis_z_rus_axes3_in_base_x*gravity_x +
-            axis_z_rus_axes3_in_base_y*gravity_y + axis_z_rus_axes3_in_base_z*gravity_z;
-        /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_Sigma_3_yy = m->rus_Sigma_3_yy[i];
-        const real rus_Sigma_3_zz = m->rus_Sigma_3_zz[i];
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_mu_3_o_x = rus_B_3_o_yx*rus_J_3_xy + rus_B_3_o_zx*rus_J_3_xz +
-            rus_B_3_o_zy*rus_Sigma_3_yy + rus_Sigma_3_zz*rus_alpha_2_o_t + rus_g_tip_y*rus_h_3_y +
-            rus_g_tip_z*rus_h_3_z - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3);
-        const real rus_Sigma_3_xx = m->rus_Sigma_3_xx[i];
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_mu_3_o_y = rus_B_3_o_xy*rus_J_3_yz + rus_g_tip_z*rus_h_3_x -
-            rus_B_3_o_zx*rus_Sigma_3_xx - rus_B_3_o_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t -
-            rus_W_3_t_3) - rus_Sigma_3_zz*rus_alpha_2_o_t_2 - rus_g_tip_x*rus_h_3_y;
-        const real rus_mu_3_o_z = rus_B_3_o_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_o_t +
-            rus_J_3_yz*rus_alpha_2_o_t_2 - rus_B_3_o_xy*rus_Sigma_3_yy - rus_J_3_xz*(rus_W_3_t -
-            rus_W_3_t_2) - rus_g_tip_x*rus_h_3_z - rus_g_tip_y*rus_h_3_x;
-        const real rus_mu_3_o_r0_y = rus_mu_3_o_x*rus_s_3 - rus_c_3*rus_mu_3_o_y;
+        const real rus_g_in_axes3_x = axis_x_rus_axes3_x*gravity_x + axis_x_rus_axes3_y*gravity_y
+            + axis_x_rus_axes3_z*gravity_z;
+        const real rus_g_in_axes3_y = axis_y_rus_axes3_x*gravity_x + axis_y_rus_axes3_y*gravity_y
+            + axis_y_rus_axes3_z*gravity_z;
+        const real rus_g_in_axes3_z = axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y
+            + axis_z_rus_axes3_z*gravity_z;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy +
+            rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
+            rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x + rus_g_in_axes3_y*rus_h_3_in_spec3_y
+            + rus_g_in_axes3_z*rus_h_3_in_spec3_z - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2 -
+            rus_mu_3_o_t_3);
+        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y + rus_g_in_axes3_z*rus_h_3_in_spec3_x
+            - rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
+            rus_mu_3_o_t_3) - rus_g_in_axes3_x*rus_h_3_in_spec3_y;
+        const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x -
+            rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
+            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
+            rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x;
+        const real rus_mu_3_o_in_axes1_z = rus_c_3*rus_mu_3_o_in_axes3_y +
+            rus_mu_3_o_in_axes3_x*rus_s_3;
         /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_mu_1_o_z = rus_J_1_zz*rus_qdd_1_o + rus_h_1_y*(rus_c_1*rus_g_r0_x +
-            rus_g_r0_y*rus_s_1) - rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+        const real rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o +
+            rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
+            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
         /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rus_N_1_o_z = rus_mu_1_o_z + rus_mu_3_o_r0_y;
+        const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rus_G_o_t = inv_rus_r_1_t*rus_mu_3_o_r0_y;
-        const real rus_G_o_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_o_z;
+        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rus_c_o_x = inv_rus_v_1_t*(rus_N_1_o_z + rus_G_o_t_2*rus_v_1_t_2 -
-            rus_G_o_t*rus_v_1_z) + rus_B_3_o_xy*rus_h_3_z + rus_alpha_2_o_t_2*rus_h_3_y +
-            rus_h_3_x*(rus_W_3_t_2 + rus_W_3_t_3);
-        const real rus_c_o_y = rus_alpha_2_o_t*rus_h_3_y - rus_G_o_t_2 - rus_B_3_o_yx*rus_h_3_x -
-            rus_h_3_z*(rus_W_3_t + rus_W_3_t_3);
-        const real rus_c_o_z = rus_B_3_o_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) -
-            rus_G_o_t - rus_B_3_o_zx*rus_h_3_x;
+        const real rus_c_o_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
+            rus_G_o_in_axes3_y*rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) +
+            rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
+            rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x -
+            rus_h_3_in_spec3_z*(rus_mu_3_o_t + rus_mu_3_o_t_3);
+        const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_y*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
+            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x;
         /* (rus-U) velocity and gravity terms of the leg force */
-        const real rus_U_in_base_x = -axis_x_rus_axes3_x*rus_c_o_x -
-            axis_y_rus_axes3_in_base_x*rus_c_o_y - axis_z_rus_axes3_in_base_x*rus_c_o_z;
-        const real rus_U_in_base_y = -axis_x_rus_axes3_y*rus_c_o_x -
-            axis_y_rus_axes3_in_base_y*rus_c_o_y - axis_z_rus_axes3_in_base_y*rus_c_o_z;
-        const real rus_U_in_base_z = -axis_x_rus_axes3_z*rus_c_o_x -
-            axis_y_rus_axes3_in_base_z*rus_c_o_y - axis_z_rus_axes3_in_base_z*rus_c_o_z;
-        terms[0*count + k] = add ? terms[0*count + k] + rus_U_in_base_x : rus_U_in_base_x;  /* total_rus_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_U_in_base_y : rus_U_in_base_y;  /* total_rus_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_U_in_base_z : rus_U_in_base_z;  /* total_rus_z */
+        const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
+        const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
+        const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_U_x : rus_U_x;  /* Z_t_rus_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rus_U_y : rus_U_y;  /* Z_t_rus_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rus_U_z : rus_U_z;  /* Z_t_rus_z */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
         o[0*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -2201,14 +2219,15 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
-        const real total_rus_x = sums[0*w + k];
-        const real Z_t_x = total_rus_x - Z_p_x;
+        const real Z_t_rus_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rus_x;
         const real Z_p_y = m->Z_p_y;
-        const real total_rus_y = sums[1*w + k];
-        const real Z_t_y = total_rus_y - Z_p_y;
+        const real Z_t_rus_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rus_y;
         const real Z_p_z = m->Z_p_z;
-        const real total_rus_z = sums[2*w + k];
-        const real Z_t_z = total_rus_z - Z_p_z;
+        const real Z_t_rus_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_rus_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
@@ -2281,24 +2300,24 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -2308,83 +2327,80 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*(rus_c_2*rus_r_1_x - rus_c_2*rus_r_1_t*rus_s_2);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
         const real inv_rus_v_1_t = 1/rus_v_1_t;
-        const real rus_w_1_t_3 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y);
-        const real rus_w_1_t_4 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z);
-        const real rus_w_1_t_5 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x);
-        o[0*count + k] = -rus_w_1_t_3;
-        o[1*count + k] = -rus_w_1_t_4;
-        o[2*count + k] = -rus_w_1_t_5;
-        o[5*count + k] = rus_w_1_t_3 + (rus_w_1_t_4 + rus_w_1_t_5);
+        const real rus_w_1_t_7 = inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y);
+        const real rus_w_1_t_8 = inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z);
+        const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x);
+        /* (rus-w_1) reciprocal vector 1 */
+        o[0*count + k] = -rus_w_1_t_7;
+        o[1*count + k] = -rus_w_1_t_8;
+        o[2*count + k] = -rus_w_1_t_9;
+        o[5*count + k] = rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
             TOLERANCE*rus_size);
         o[3*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -2498,24 +2514,24 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -2525,225 +2541,239 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3;
+        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
+        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
+        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
         /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
-        /* (rus-qd_3) rate of joint 3 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        /* (rus-qd_1) rate of joint 1 */
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x +
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
             axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*t_dot_x +
-            axis_y_rus_axes3_in_base_y*t_dot_y + axis_y_rus_axes3_in_base_z*t_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*t_dot_x +
-            axis_z_rus_axes3_in_base_y*t_dot_y + axis_z_rus_axes3_in_base_z*t_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
-        /* (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3;
-        const real rus_zeta_3_y = rus_omega_2_t*rus_qd_3;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_t = rus_omega_2_t*rus_omega_2_t;
-        const real rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2;
-        const real rus_W_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
+            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_platform_joint_offset_x*rus_zeta_3_y - rus_bias_t*rus_omega_1_t*rus_omega_1_t -
-            rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t;
-        const real rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t;
-        const real rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t;
+        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
+        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        /* (rus-omega_2) angular velocity of link 2 */
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
+        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        /* (rus-W_3) centripetal tensor of link 3 */
+        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-S_ddot) acceleration of the connection point */
         const real t_ddot_x = s[6*w + j];
         const real t_ddot_y = s[7*w + j];
         const real t_ddot_z = s[8*w + j];
-        const real rus_S_ddot_tip_x = axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y +
-            axis_x_rus_axes3_z*t_ddot_z;
-        const real rus_S_ddot_tip_y = axis_y_rus_axes3_in_base_x*t_ddot_x +
-            axis_y_rus_axes3_in_base_y*t_ddot_y + axis_y_rus_axes3_in_base_z*t_ddot_z;
-        const real rus_S_ddot_tip_z = axis_z_rus_axes3_in_base_x*t_ddot_x +
-            axis_z_rus_axes3_in_base_y*t_ddot_y + axis_z_rus_axes3_in_base_z*t_ddot_z;
+        const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x +
+            axis_x_rus_axes3_y*t_ddot_y + axis_x_rus_axes3_z*t_ddot_z;
+        const real rus_S_ddot_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x +
+            axis_y_rus_axes3_y*t_ddot_y + axis_y_rus_axes3_z*t_ddot_z;
+        const real rus_S_ddot_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x +
+            axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z;
+        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
+            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+            rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_x = rus_S_ddot_tip_x - rus_bias_x;
-        const real rus_rel_y = rus_S_ddot_tip_y - rus_bias_y;
-        const real rus_rel_z = rus_S_ddot_tip_z - rus_bias_z;
+        const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
+        const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
+        const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
         /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1 = inv_rus_v_1_t*rus_rel_x;
-        const real rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 -
-            rus_rel_y);
+        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+        /* (rus-qdd_3) acceleration of joint 3 */
+        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
+            rus_qdd_1_t*rus_v_1_in_axes3_y);
+        /* (rus-alpha_2) angular acceleration of link 2 */
+        const real rus_alpha_2_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+            rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t;
+        const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3;
+        const real rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3;
+        /* (rus-alpha_3) angular acceleration of link 3 */
+        const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
+        const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
+        /* (rus-B_3) acceleration tensor of link 3 */
+        const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
+        const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
+        const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
+        const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
         /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rus_acc_3_x = rus_S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x -
+        const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
             axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_y = rus_S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z;
-        const real rus_acc_3_z = rus_S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z;
-        /* (rus-alpha_2) angular acceleration of link 2 */
-        const real rus_alpha_2_z = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z) - rus_qdd_1;
-        const real rus_alpha_2_t = rus_alpha_2_z*rus_s_3;
-        const real rus_alpha_2_t_2 = rus_alpha_2_z*rus_c_3;
-        /* (rus-alpha_3) angular acceleration of link 3 */
-        const real rus_alpha_3_x = rus_alpha_2_t - rus_zeta_3_x;
-        const real rus_alpha_3_y = -rus_alpha_2_t_2 - rus_zeta_3_y;
-        /* (rus-B_3) acceleration tensor of link 3 */
-        const real rus_B_3_xy = rus_qdd_3 - rus_W_3_xy;
-        const real rus_B_3_yx = -rus_W_3_xy - rus_qdd_3;
-        const real rus_B_3_zx = rus_zeta_3_y - rus_alpha_3_y;
-        const real rus_B_3_zy = rus_alpha_3_x - rus_zeta_3_x;
+        const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
+            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
+        const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
+            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
         /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_Sigma_3_yy = m->rus_Sigma_3_yy[i];
-        const real rus_Sigma_3_zz = m->rus_Sigma_3_zz[i];
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_mu_3_x = rus_B_3_yx*rus_J_3_xy + rus_B_3_zx*rus_J_3_xz +
-            rus_B_3_zy*rus_Sigma_3_yy + rus_Sigma_3_zz*rus_alpha_2_t - rus_J_3_yz*(rus_W_3_t_2 -
-            rus_W_3_t_3) - rus_acc_3_y*rus_h_3_y - rus_acc_3_z*rus_h_3_z;
-        const real rus_Sigma_3_xx = m->rus_Sigma_3_xx[i];
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_mu_3_y = rus_B_3_xy*rus_J_3_yz + rus_acc_3_x*rus_h_3_y -
-            rus_B_3_zx*rus_Sigma_3_xx - rus_B_3_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t -
-            rus_W_3_t_3) - rus_Sigma_3_zz*rus_alpha_2_t_2 - rus_acc_3_z*rus_h_3_x;
-        const real rus_mu_3_z = rus_B_3_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_t +
-            rus_J_3_yz*rus_alpha_2_t_2 + rus_acc_3_x*rus_h_3_z + rus_acc_3_y*rus_h_3_x -
-            rus_B_3_xy*rus_Sigma_3_yy - rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2);
-        const real rus_mu_3_r0_y = rus_mu_3_x*rus_s_3 - rus_c_3*rus_mu_3_y;
+        const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+        const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+        const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
+            rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
+            + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
+        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
+            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
+        const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
+            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
+            - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
+            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
+        const real rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y +
+            rus_mu_3_in_axes3_x*rus_s_3;
         /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_mu_1_z = rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) -
-            rus_J_1_zz*rus_qdd_1 - rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+        const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
+            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
         /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rus_N_1_z = rus_mu_1_z + rus_mu_3_r0_y;
+        const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rus_G_t = inv_rus_r_1_t*rus_mu_3_r0_y;
-        const real rus_G_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_z;
+        const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rus_c_x = inv_rus_v_1_t*(rus_N_1_z + rus_G_t_2*rus_v_1_t_2 - rus_G_t*rus_v_1_z)
-            + rus_B_3_xy*rus_h_3_z + rus_alpha_2_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
-            rus_W_3_t_3);
-        const real rus_c_y = rus_alpha_2_t*rus_h_3_y - rus_G_t_2 - rus_B_3_yx*rus_h_3_x -
-            rus_h_3_z*(rus_W_3_t + rus_W_3_t_3);
-        const real rus_c_z = rus_B_3_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_t
-            - rus_B_3_zx*rus_h_3_x;
-        const real rus_c_in_base_x = axis_x_rus_axes3_x*rus_c_x +
-            axis_y_rus_axes3_in_base_x*rus_c_y + axis_z_rus_axes3_in_base_x*rus_c_z;
-        const real rus_c_in_base_y = axis_x_rus_axes3_y*rus_c_x +
-            axis_y_rus_axes3_in_base_y*rus_c_y + axis_z_rus_axes3_in_base_y*rus_c_z;
-        const real rus_c_in_base_z = axis_x_rus_axes3_z*rus_c_x +
-            axis_y_rus_axes3_in_base_z*rus_c_y + axis_z_rus_axes3_in_base_z*rus_c_z;
-        terms[0*count + k] = add ? terms[0*count + k] + rus_c_in_base_x : rus_c_in_base_x;  /* total_rus_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_c_in_base_y : rus_c_in_base_y;  /* total_rus_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_c_in_base_z : rus_c_in_base_z;  /* total_rus_z */
-        o[0*count + k] = -rus_w_1_t_3;
-        o[1*count + k] = -rus_w_1_t_4;
-        o[2*count + k] = -rus_w_1_t_5;
+        const real rus_c_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_in_axes1_z -
+            rus_G_in_axes3_y*rus_v_1_in_axes3_y - rus_G_in_axes3_z*rus_v_1_in_axes3_z) +
+            rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
+            rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
+            - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
+            rus_mu_3_t_3);
+        const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
+            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
+        const real rus_c_x = axis_x_rus_axes3_x*rus_c_in_axes3_x +
+            axis_y_rus_axes3_x*rus_c_in_axes3_y + axis_z_rus_axes3_x*rus_c_in_axes3_z;
+        const real rus_c_y = axis_x_rus_axes3_y*rus_c_in_axes3_x +
+            axis_y_rus_axes3_y*rus_c_in_axes3_y + axis_z_rus_axes3_y*rus_c_in_axes3_z;
+        const real rus_c_z = axis_x_rus_axes3_z*rus_c_in_axes3_x +
+            axis_y_rus_axes3_z*rus_c_in_axes3_y + axis_z_rus_axes3_z*rus_c_in_axes3_z;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_c_x : rus_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rus_c_y : rus_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + rus_c_z : rus_c_z;  /* R_t_t_3 */
+        /* (rus-w_1) reciprocal vector 1 */
+        o[0*count + k] = -rus_w_1_t_7;
+        o[1*count + k] = -rus_w_1_t_8;
+        o[2*count + k] = -rus_w_1_t_9;
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
         o[3*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -2765,15 +2795,16 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[9*w + k];
-        const real total_rus_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_rus_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[10*w + k];
-        const real total_rus_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_rus_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[11*w + k];
-        const real total_rus_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_rus_z;
+        const real R_t_z = f_p_z - R_t_t_3;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
@@ -2847,24 +2878,24 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg,
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -2874,45 +2905,47 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg,
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+        /* (rus-q_1) displacement of joint 1 */
+        const real inv_rus_rho2_1 = 1/rus_rho2_1;
+        const real rus_q_1 = angle(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
+            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1));
         /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
         const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
             rus_S_z*rus_base_frame_zz;
         /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
             rus_joint2_offset_x;
         /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
         /* (rus-root_2) root, with the sign of the branch */
         const real rus_branch_2 = m->rus_branch_2[i];
         const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        /* (rus-q_1) displacement of joint 1 */
-        const real rus_q_1 = angle(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
-            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1));
         /* (rus-q_2) displacement of joint 2 */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
         const real rus_q_2 = angle(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t,
-            inv_rus_rho2_2*rus_root_2*rus_x_2_x);
+            inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x);
         /* (rus-q_3) displacement of joint 3 */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_q_3 = angle(-inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2,
-            inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2);
+        const real rus_q_3 =
+            angle(-inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z,
+            inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2);
+        /* (rus-q_1) displacement of joint 1 */
         o[0*count + k] = rus_q_1;
+        /* (rus-q_2) displacement of joint 2 */
         o[1*count + k] = rus_q_2;
+        /* (rus-q_3) displacement of joint 3 */
         o[2*count + k] = rus_q_3;
         o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t);
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
         o[3*count + k] = UNLESS(rus_disc_1 >= 0);
     }
 }
@@ -2999,24 +3032,24 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t leg, size_t
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -3026,96 +3059,98 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t leg, size_t
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        /* (rus-qd_3) rate of joint 3 */
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = -rus_c_3*rus_r_1_in_axes3_z;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
+            rus_base_frame_xy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
+            rus_base_frame_yy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
+            rus_base_frame_zy*rus_qd_1_t_2;
+        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
+        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
+            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
+            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
+            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = (t_dot_x*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y) +
-            t_dot_y*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z) +
-            t_dot_z*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x))/rus_v_1_t;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*(axis_y_rus_axes3_in_base_x*t_dot_x
-            + axis_y_rus_axes3_in_base_y*t_dot_y + axis_y_rus_axes3_in_base_z*t_dot_z -
-            rus_qd_1*rus_r_1_r0_x*rus_s_3);
-        const real rus_qd_3_t = axis_z_rus_axes3_in_base_x*t_dot_x +
-            axis_z_rus_axes3_in_base_y*t_dot_y + axis_z_rus_axes3_in_base_z*t_dot_z +
-            rus_qd_1*(rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3));
-        const real rus_qd_2 = rus_qd_3_t/rus_r_1_t;
-        o[0*count + k] = -rus_qd_1;
+        const real rus_qd_1 = -(t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
+            t_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
+            t_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t;
+        /* (rus-qd_2) rate of joint 2 */
+        const real rus_qd_2_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_qd_2_t_2 = axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*(rus_s_3*(rus_c_3*rus_r_1_in_axes1_z +
+            rus_qd_2_t*rus_s_3) - rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_qd_2_t));
+        const real rus_qd_2 = rus_qd_2_t_2/rus_r_1_t;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*t_dot_x +
+            axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
+            rus_qd_1*rus_r_1_in_axes3_z*rus_s_3);
+        /* (rus-qd_1) rate of joint 1 */
+        o[0*count + k] = rus_qd_1;
+        /* (rus-qd_2) rate of joint 2 */
         o[1*count + k] = rus_qd_2;
+        /* (rus-qd_3) rate of joint 3 */
         o[2*count + k] = rus_qd_3;
         o[5*count + k] = rus_qd_1 + (rus_qd_2 + rus_qd_3);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
             TOLERANCE*rus_size);
         o[3*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -3215,24 +3250,24 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -3242,138 +3277,143 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3;
+        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
         /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
-        /* (rus-qd_3) rate of joint 3 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
+            rus_base_frame_xy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
+            rus_base_frame_yy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
+            rus_base_frame_zy*rus_qd_1_t_2;
+        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
+        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
+            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
+            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
+            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x +
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
             axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*t_dot_x +
-            axis_y_rus_axes3_in_base_y*t_dot_y + axis_y_rus_axes3_in_base_z*t_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*t_dot_x +
-            axis_z_rus_axes3_in_base_y*t_dot_y + axis_z_rus_axes3_in_base_z*t_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
+            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
+        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        /* (rus-omega_2) angular velocity of link 2 */
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
+        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_omega_2_t*rus_platform_joint_offset_x*rus_qd_3 -
-            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
+            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t +
+            rus_omega_2_in_axes3_x*rus_platform_joint_offset_x*rus_qd_3 -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel) acceleration of the connection point left to the joint accelerations */
         const real t_ddot_x = s[6*w + j];
         const real t_ddot_y = s[7*w + j];
         const real t_ddot_z = s[8*w + j];
-        const real rus_rel_x = axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y +
-            axis_x_rus_axes3_z*t_ddot_z - rus_bias_x;
-        const real rus_rel_y = axis_y_rus_axes3_in_base_x*t_ddot_x +
-            axis_y_rus_axes3_in_base_y*t_ddot_y + axis_y_rus_axes3_in_base_z*t_ddot_z -
-            rus_bias_y;
-        const real rus_rel_z = axis_z_rus_axes3_in_base_x*t_ddot_x +
-            axis_z_rus_axes3_in_base_y*t_ddot_y + axis_z_rus_axes3_in_base_z*t_ddot_z -
-            rus_bias_z;
+        const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y
+            + axis_x_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_x;
+        const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x + axis_y_rus_axes3_y*t_ddot_y
+            + axis_y_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_y;
+        const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y
+            + axis_z_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_z;
         /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1 = inv_rus_v_1_t*rus_rel_x;
-        const real rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 -
-            rus_rel_y);
-        const real rus_qdd_2 = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z);
-        o[0*count + k] = -rus_qdd_1;
+        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+        /* (rus-qdd_2) acceleration of joint 2 */
+        const real rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+            rus_qdd_1_t*rus_v_1_in_axes3_z);
+        /* (rus-qdd_3) acceleration of joint 3 */
+        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
+            rus_qdd_1_t*rus_v_1_in_axes3_y);
+        /* (rus-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = -rus_qdd_1_t;
+        /* (rus-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rus_qdd_2;
-        o[2*count + k] = -rus_qdd_3;
-        o[5*count + k] = rus_qdd_1 + (rus_qdd_2 + rus_qdd_3);
+        /* (rus-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = -rus_qdd_3_t;
+        o[5*count + k] = rus_qdd_1_t + (rus_qdd_2 + rus_qdd_3_t);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
         o[3*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -3473,24 +3513,24 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -3500,230 +3540,244 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3;
+        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
+        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
+        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
         /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
-        /* (rus-qd_3) rate of joint 3 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        /* (rus-qd_1) rate of joint 1 */
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*t_dot_x +
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
             axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*t_dot_x +
-            axis_y_rus_axes3_in_base_y*t_dot_y + axis_y_rus_axes3_in_base_z*t_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*t_dot_x +
-            axis_z_rus_axes3_in_base_y*t_dot_y + axis_z_rus_axes3_in_base_z*t_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
-        /* (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3;
-        const real rus_zeta_3_y = rus_omega_2_t*rus_qd_3;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_t = rus_omega_2_t*rus_omega_2_t;
-        const real rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2;
-        const real rus_W_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
+            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_platform_joint_offset_x*rus_zeta_3_y - rus_bias_t*rus_omega_1_t*rus_omega_1_t -
-            rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t;
-        const real rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t;
-        const real rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t;
+        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
+        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        /* (rus-omega_2) angular velocity of link 2 */
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
+        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        /* (rus-W_3) centripetal tensor of link 3 */
+        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-S_ddot) acceleration of the connection point */
         const real t_ddot_x = s[6*w + j];
         const real t_ddot_y = s[7*w + j];
         const real t_ddot_z = s[8*w + j];
-        const real rus_S_ddot_tip_x = axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y +
-            axis_x_rus_axes3_z*t_ddot_z;
-        const real rus_S_ddot_tip_y = axis_y_rus_axes3_in_base_x*t_ddot_x +
-            axis_y_rus_axes3_in_base_y*t_ddot_y + axis_y_rus_axes3_in_base_z*t_ddot_z;
-        const real rus_S_ddot_tip_z = axis_z_rus_axes3_in_base_x*t_ddot_x +
-            axis_z_rus_axes3_in_base_y*t_ddot_y + axis_z_rus_axes3_in_base_z*t_ddot_z;
+        const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x +
+            axis_x_rus_axes3_y*t_ddot_y + axis_x_rus_axes3_z*t_ddot_z;
+        const real rus_S_ddot_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x +
+            axis_y_rus_axes3_y*t_ddot_y + axis_y_rus_axes3_z*t_ddot_z;
+        const real rus_S_ddot_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x +
+            axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z;
+        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
+            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+            rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_x = rus_S_ddot_tip_x - rus_bias_x;
-        const real rus_rel_y = rus_S_ddot_tip_y - rus_bias_y;
-        const real rus_rel_z = rus_S_ddot_tip_z - rus_bias_z;
+        const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
+        const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
+        const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
         /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1 = inv_rus_v_1_t*rus_rel_x;
-        const real rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 -
-            rus_rel_y);
+        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+        /* (rus-qdd_3) acceleration of joint 3 */
+        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
+            rus_qdd_1_t*rus_v_1_in_axes3_y);
+        /* (rus-alpha_2) angular acceleration of link 2 */
+        const real rus_alpha_2_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+            rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t;
+        const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3;
+        const real rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3;
+        /* (rus-alpha_3) angular acceleration of link 3 */
+        const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
+        const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
+        /* (rus-B_3) acceleration tensor of link 3 */
+        const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
+        const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
+        const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
+        const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
         /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rus_acc_3_x = rus_S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x -
+        const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
             axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_y = rus_S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z;
-        const real rus_acc_3_z = rus_S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z;
-        /* (rus-alpha_2) angular acceleration of link 2 */
-        const real rus_alpha_2_z = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z) - rus_qdd_1;
-        const real rus_alpha_2_t = rus_alpha_2_z*rus_s_3;
-        const real rus_alpha_2_t_2 = rus_alpha_2_z*rus_c_3;
-        /* (rus-alpha_3) angular acceleration of link 3 */
-        const real rus_alpha_3_x = rus_alpha_2_t - rus_zeta_3_x;
-        const real rus_alpha_3_y = -rus_alpha_2_t_2 - rus_zeta_3_y;
-        /* (rus-B_3) acceleration tensor of link 3 */
-        const real rus_B_3_xy = rus_qdd_3 - rus_W_3_xy;
-        const real rus_B_3_yx = -rus_W_3_xy - rus_qdd_3;
-        const real rus_B_3_zx = rus_zeta_3_y - rus_alpha_3_y;
-        const real rus_B_3_zy = rus_alpha_3_x - rus_zeta_3_x;
+        const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
+            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
+        const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
+            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
         /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_Sigma_3_yy = m->rus_Sigma_3_yy[i];
-        const real rus_Sigma_3_zz = m->rus_Sigma_3_zz[i];
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_mu_3_x = rus_B_3_yx*rus_J_3_xy + rus_B_3_zx*rus_J_3_xz +
-            rus_B_3_zy*rus_Sigma_3_yy + rus_Sigma_3_zz*rus_alpha_2_t - rus_J_3_yz*(rus_W_3_t_2 -
-            rus_W_3_t_3) - rus_acc_3_y*rus_h_3_y - rus_acc_3_z*rus_h_3_z;
-        const real rus_Sigma_3_xx = m->rus_Sigma_3_xx[i];
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_mu_3_y = rus_B_3_xy*rus_J_3_yz + rus_acc_3_x*rus_h_3_y -
-            rus_B_3_zx*rus_Sigma_3_xx - rus_B_3_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t -
-            rus_W_3_t_3) - rus_Sigma_3_zz*rus_alpha_2_t_2 - rus_acc_3_z*rus_h_3_x;
-        const real rus_mu_3_z = rus_B_3_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_t +
-            rus_J_3_yz*rus_alpha_2_t_2 + rus_acc_3_x*rus_h_3_z + rus_acc_3_y*rus_h_3_x -
-            rus_B_3_xy*rus_Sigma_3_yy - rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2);
-        const real rus_mu_3_r0_y = rus_mu_3_x*rus_s_3 - rus_c_3*rus_mu_3_y;
+        const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+        const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+        const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
+            rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
+            + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
+        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
+            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
+        const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
+            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
+            - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
+            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
+        const real rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y +
+            rus_mu_3_in_axes3_x*rus_s_3;
         /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_mu_1_z = rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) -
-            rus_J_1_zz*rus_qdd_1 - rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+        const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
+            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
         /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rus_N_1_z = rus_mu_1_z + rus_mu_3_r0_y;
+        const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rus_G_t = inv_rus_r_1_t*rus_mu_3_r0_y;
-        const real rus_G_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_z;
+        const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rus_c_x = inv_rus_v_1_t*(rus_N_1_z + rus_G_t_2*rus_v_1_t_2 - rus_G_t*rus_v_1_z)
-            + rus_B_3_xy*rus_h_3_z + rus_alpha_2_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
-            rus_W_3_t_3);
-        const real rus_c_y = rus_alpha_2_t*rus_h_3_y - rus_G_t_2 - rus_B_3_yx*rus_h_3_x -
-            rus_h_3_z*(rus_W_3_t + rus_W_3_t_3);
-        const real rus_c_z = rus_B_3_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_t
-            - rus_B_3_zx*rus_h_3_x;
+        const real rus_c_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_in_axes1_z -
+            rus_G_in_axes3_y*rus_v_1_in_axes3_y - rus_G_in_axes3_z*rus_v_1_in_axes3_z) +
+            rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
+            rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
+            - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
+            rus_mu_3_t_3);
+        const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
+            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
         /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rus_link3_mass = m->rus_link3_mass[i];
-        const real rus_c_true_x = rus_c_x - rus_acc_3_x*rus_link3_mass;
-        const real rus_c_true_y = rus_c_y - rus_acc_3_y*rus_link3_mass;
-        const real rus_c_true_z = rus_c_z - rus_acc_3_z*rus_link3_mass;
-        const real rus_c_true_in_base_x = axis_x_rus_axes3_x*rus_c_true_x +
-            axis_y_rus_axes3_in_base_x*rus_c_true_y + axis_z_rus_axes3_in_base_x*rus_c_true_z;
-        const real rus_c_true_in_base_y = axis_x_rus_axes3_y*rus_c_true_x +
-            axis_y_rus_axes3_in_base_y*rus_c_true_y + axis_z_rus_axes3_in_base_y*rus_c_true_z;
-        const real rus_c_true_in_base_z = axis_x_rus_axes3_z*rus_c_true_x +
-            axis_y_rus_axes3_in_base_z*rus_c_true_y + axis_z_rus_axes3_in_base_z*rus_c_true_z;
-        o[0*count + k] = rus_c_true_in_base_x;
-        o[1*count + k] = rus_c_true_in_base_y;
-        o[2*count + k] = rus_c_true_in_base_z;
-        o[3*count + k] = -rus_w_1_t_3;
-        o[4*count + k] = -rus_w_1_t_4;
-        o[5*count + k] = -rus_w_1_t_5;
+        const real rus_c_true_in_axes3_x = rus_c_in_axes3_x - rus_acc_3_in_axes3_x*rus_link3_mass;
+        const real rus_c_true_in_axes3_y = rus_c_in_axes3_y - rus_acc_3_in_axes3_y*rus_link3_mass;
+        const real rus_c_true_in_axes3_z = rus_c_in_axes3_z - rus_acc_3_in_axes3_z*rus_link3_mass;
+        const real rus_c_true_x = axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
+            axis_y_rus_axes3_x*rus_c_true_in_axes3_y + axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
+        const real rus_c_true_y = axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
+            axis_y_rus_axes3_y*rus_c_true_in_axes3_y + axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
+        const real rus_c_true_z = axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
+            axis_y_rus_axes3_z*rus_c_true_in_axes3_y + axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
+        /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rus_c_true_x;
+        o[1*count + k] = rus_c_true_y;
+        o[2*count + k] = rus_c_true_z;
+        /* (rus-w_1) reciprocal vector 1 */
+        o[3*count + k] = -rus_w_1_t_7;
+        o[4*count + k] = -rus_w_1_t_8;
+        o[5*count + k] = -rus_w_1_t_9;
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
         o[6*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -3805,24 +3859,24 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -3832,66 +3886,67 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_d_Gamma_2_t = rus_h_3_z*rus_s_3 - rus_c_3*rus_h_3_x;
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
         /* (potential) potential energy */
-        const real rus_b_r0_x = m->rus_b_r0_x[i];
-        const real rus_b_r0_y = m->rus_b_r0_y[i];
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_g_r0_z = m->rus_g_r0_z[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_h_1_z = m->rus_h_1_z[i];
-        const real rus_h_3_y = m->rus_h_3_y[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_potential_t_4 = rus_c_3*rus_h_3_in_spec3_x + rus_h_3_in_spec3_z*rus_s_3;
+        const real rus_g_in_axes1_z = m->rus_g_in_axes1_z[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_h_1_in_spec1_z = m->rus_h_1_in_spec1_z[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
         const real rus_link1_mass = m->rus_link1_mass[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
         const real rus_potential_t = m->rus_potential_t[i];
-        const real rus_potential_t_2 = rus_g_r0_z*(rus_h_1_z + rus_potential_t + rus_c_3*rus_h_3_z
-            + rus_h_3_x*rus_s_3) + (rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1)*(rus_h_1_x +
-            rus_c_2*rus_h_3_y + rus_link1_mass*(rus_b_r0_x*rus_c_1 + rus_b_r0_y*rus_s_1) -
-            rus_d_Gamma_2_t*rus_s_2) + (rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)*(rus_h_1_y +
-            rus_c_2*rus_d_Gamma_2_t + rus_h_3_y*rus_s_2 + rus_link1_mass*(rus_b_r0_y*rus_c_1 -
-            rus_b_r0_x*rus_s_1));
-        terms[0*count + k] = add ? terms[0*count + k] + rus_potential_t_2 : rus_potential_t_2;  /* total_rus */
+        const real rus_potential_t_2 = m->rus_potential_t_2[i];
+        const real rus_potential_t_3 = m->rus_potential_t_3[i];
+        const real rus_potential_t_5 = rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 +
+            rus_h_3_in_spec3_x*rus_s_3 - rus_c_3*rus_h_3_in_spec3_z) + (rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_c_2*rus_h_3_in_spec3_y +
+            rus_link1_mass*(rus_c_1*rus_potential_t + rus_potential_t_2*rus_s_1) -
+            rus_potential_t_4*rus_s_2) + (rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_potential_t_4 +
+            rus_h_3_in_spec3_y*rus_s_2 + rus_link1_mass*(rus_c_1*rus_potential_t_2 -
+            rus_potential_t*rus_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_potential_t_5 : rus_potential_t_5;  /* potential_t_2 */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t);
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
         o[0*count + k] = UNLESS(rus_disc_1 >= 0);
     }
 }
@@ -3909,8 +3964,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[3*w + k];
-        const real total_rus = sums[0*w + k];
-        const real potential_ = -potential_t - total_rus;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -3944,6 +4000,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -3972,24 +4029,24 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -3999,112 +4056,108 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*(rus_c_2*rus_r_1_x - rus_c_2*rus_r_1_t*rus_s_2);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        const real rus_w_1_t_3 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y);
-        const real rus_w_1_t_4 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z);
-        const real rus_w_1_t_5 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rus_spread_t = b_c_x - rus_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rus_spread_t_2 = b_c_y - rus_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real rus_spread_t_3 = b_c_z - rus_platform_point_z;
-        const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
-            rus_spread_t_3*rus_spread_t_3;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_pivot_size = magnitude(rus_rho2_1);
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
         /* (rus-rho2_2) squared amplitude */
-        const real rus_pivot_size_2 = magnitude(rus_rho2_2);
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2);
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_pivot_size_3 = magnitude(rus_r_1_t);
-        const real rus_pivot_size_4 = magnitude(rus_v_1_t);
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real rus_w_1_t_7 = inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y);
+        const real rus_w_1_t_8 = inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z);
+        const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x);
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_rus_rho2_1_t_4 = m->inv_rus_rho2_1_t_4[i];
+        const real rus_pivot_size = magnitude(rus_rho2_1);
+        const real rus_pivot_size_2 = magnitude(rus_rho2_2);
+        const real rus_pivot_size_3 = magnitude(rus_r_1_t);
+        const real rus_pivot_size_4 = magnitude(rus_v_1_t);
+        const real inv_rus_rho2_1_t = m->inv_rus_rho2_1_t[i];
         const real inv_rus_size = m->inv_rus_size[i];
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_least_pivots =
-            lesser(lesser(lesser(root(inv_rus_rho2_1_t_4*rus_pivot_size),
+        const real inv_rus_size_t_3 = m->inv_rus_size_t_3[i];
+        const real rus_least_pivots = lesser(lesser(lesser(root(inv_rus_rho2_1_t*rus_pivot_size),
             inv_rus_size*rus_pivot_size_3), inv_rus_size*rus_pivot_size_4),
-            root(inv_rus_size_t*rus_pivot_size_2));
-        terms[0*count + k] = add ? terms[0*count + k] + rus_spread_t_4 : rus_spread_t_4;  /* total_rus */
-        o[0*count + k] = -rus_w_1_t_3;
-        o[1*count + k] = -rus_w_1_t_4;
-        o[2*count + k] = -rus_w_1_t_5;
+            root(inv_rus_size_t_3*rus_pivot_size_2));
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rus_spread_t = b_c_in_platform_x - rus_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rus_spread_t_2 = b_c_in_platform_y - rus_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real rus_spread_t_3 = b_c_in_platform_z - rus_platform_point_z;
+        const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
+            rus_spread_t_3*rus_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_spread_t_4 : rus_spread_t_4;  /* spread_rus */
+        /* (rus-w_1) reciprocal vector 1 */
+        o[0*count + k] = -rus_w_1_t_7;
+        o[1*count + k] = -rus_w_1_t_8;
+        o[2*count + k] = -rus_w_1_t_9;
+        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = rus_least_pivots;
         o[4*count + k] = rus_disc_1;
-        o[7*count + k] = (rus_w_1_t_3 + rus_w_1_t_4) + (rus_w_1_t_5 + (rus_least_pivots +
+        o[7*count + k] = (rus_w_1_t_7 + rus_w_1_t_8) + (rus_w_1_t_9 + (rus_least_pivots +
             rus_disc_1));
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[6*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
             TOLERANCE*rus_size);
         o[5*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -4130,9 +4183,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_rus = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_rus = sums[0*w + k];
-        const real spread_ = spread_t*root(total_rus);
+        const real spread_ = root(spread_rus)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

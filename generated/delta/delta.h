@@ -96,21 +96,25 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type rus; copies of the first fill up */
-    delta_real inv_rus_Kd_1_t_6[4], inv_rus_Kd_1_t_8[4], inv_rus_platform_joint_offset_x[4],
-            inv_rus_rho2_1_t_4[4], inv_rus_size[4], inv_rus_size_t[4], rus_J_1_zz[4], rus_J_3_xx[4],
-            rus_J_3_xy[4], rus_J_3_xz[4], rus_J_3_yz[4], rus_J_3_zz[4], rus_Kd_1_t_2[4],
-            rus_Kd_1_t_4[4], rus_Sigma_3_xx[4], rus_Sigma_3_yy[4], rus_Sigma_3_zz[4], rus_b_r0_x[4],
-            rus_b_r0_y[4], rus_base_frame_xx[4], rus_base_frame_xy[4], rus_base_frame_xz[4],
-            rus_base_frame_yx[4], rus_base_frame_yy[4], rus_base_frame_yz[4], rus_base_frame_zx[4],
-            rus_base_frame_zy[4], rus_base_frame_zz[4], rus_base_point_x[4], rus_base_point_y[4],
-            rus_base_point_z[4], rus_branch_1[4], rus_branch_2[4], rus_d_Gamma_3_t[4],
-            rus_d_Gamma_3_y[4], rus_d_c_yy[4], rus_d_phi_3_t[4], rus_g_r0_x[4], rus_g_r0_y[4],
-            rus_g_r0_z[4], rus_h_1_x[4], rus_h_1_y[4], rus_h_1_z[4], rus_h_3_x[4], rus_h_3_y[4],
-            rus_h_3_z[4], rus_joint2_offset_x[4], rus_link1_mass[4], rus_link3_mass[4],
-            rus_platform_joint_offset_x[4], rus_platform_point_x[4], rus_platform_point_y[4],
-            rus_platform_point_z[4], rus_potential_t[4], rus_rho2_1_t[4], rus_size[4], rus_size_t[4];
-    delta_real Z_p_x, Z_p_y, Z_p_z, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z, h_star_x,
-            h_star_y, h_star_z, legs_size, m_star, spread_t;
+    delta_real inv_rus_rho2_1_t[4], inv_rus_size[4], inv_rus_size_t[4], inv_rus_size_t_2[4],
+            inv_rus_size_t_3[4], rus_J_1_in_spec1_zz[4], rus_J_3_in_spec3_xx[4],
+            rus_J_3_in_spec3_xy[4], rus_J_3_in_spec3_xz[4], rus_J_3_in_spec3_yz[4],
+            rus_J_3_in_spec3_zz[4], rus_J_3_t[4], rus_J_3_t_2[4], rus_Sigma_3_in_axes3_xx[4],
+            rus_Sigma_3_in_axes3_yy[4], rus_Sigma_3_in_axes3_zz[4], rus_base_frame_xx[4],
+            rus_base_frame_xy[4], rus_base_frame_xz[4], rus_base_frame_yx[4], rus_base_frame_yy[4],
+            rus_base_frame_yz[4], rus_base_frame_zx[4], rus_base_frame_zy[4], rus_base_frame_zz[4],
+            rus_base_point_x[4], rus_base_point_y[4], rus_base_point_z[4], rus_branch_1[4],
+            rus_branch_2[4], rus_d_Gamma_3_in_axes3_y[4], rus_d_Gamma_3_t[4], rus_d_c_in_axes3_yy[4],
+            rus_d_phi_3_in_axes3_xy[4], rus_g_in_axes1_z[4], rus_h_1_in_spec1_x[4],
+            rus_h_1_in_spec1_y[4], rus_h_1_in_spec1_z[4], rus_h_3_in_spec3_x[4],
+            rus_h_3_in_spec3_y[4], rus_h_3_in_spec3_z[4], rus_joint2_offset_x[4], rus_link1_mass[4],
+            rus_link3_mass[4], rus_mu_1_t[4], rus_mu_1_t_2[4], rus_platform_joint_offset_x[4],
+            rus_platform_point_x[4], rus_platform_point_y[4], rus_platform_point_z[4],
+            rus_potential_t[4], rus_potential_t_2[4], rus_potential_t_3[4], rus_rho2_1_t[4],
+            rus_size[4], rus_size_t_3[4], rus_w_3_in_axes3_y[4];
+    delta_real Z_p_x, Z_p_y, Z_p_z, b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z,
+            gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, legs_size, m_star,
+            spread_t;
 } delta_model;
 
 extern const delta_params delta_default_params;

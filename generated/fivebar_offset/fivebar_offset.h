@@ -110,25 +110,26 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 1 legs of type crank */
-    fivebar_offset_real crank_J_1_zz[1], crank_base_frame_xx[1], crank_base_frame_xy[1],
+    fivebar_offset_real crank_J_1_in_spec1_zz[1], crank_base_frame_xx[1], crank_base_frame_xy[1],
             crank_base_frame_yx[1], crank_base_frame_yy[1], crank_base_point_x[1],
-            crank_base_point_y[1], crank_d_G_yy[1], crank_g_r0_x[1], crank_g_r0_y[1], crank_h_1_x[1],
-            crank_h_1_y[1], crank_n_c_t[1], crank_n_c_x[1], crank_platform_joint_offset_x[1],
-            crank_platform_point_x[1], crank_platform_point_y[1], crank_potential_t[1],
-            crank_potential_t_2[1], crank_root_1_t[1], inv_crank_platform_joint_offset_x[1],
-            inv_crank_root_1_t_2[1];
+            crank_base_point_y[1], crank_d_G_in_axes1_yy[1], crank_h_1_in_spec1_x[1],
+            crank_h_1_in_spec1_y[1], crank_mu_1_t[1], crank_mu_1_t_2[1], crank_n_c_in_axes1_x[1],
+            crank_platform_joint_offset_x[1], crank_platform_point_x[1], crank_platform_point_y[1],
+            crank_potential_t[1], crank_potential_t_2[1], crank_root_1_t[1], crank_size_t[1],
+            crank_w_1_in_axes1_y[1], inv_crank_root_1_t[1];
     /* 1 legs of type rrr */
-    fivebar_offset_real inv_rrr_Kd_1_t_5[1], inv_rrr_Kd_1_t_7[1], inv_rrr_platform_joint_offset_x[1],
-            inv_rrr_rho2_1_t_4[1], inv_rrr_size[1], rrr_J_1_zz[1], rrr_J_2_zz[1], rrr_Jc_1_zz[1],
-            rrr_Kd_1_t_2[1], rrr_Kd_1_t_4[1], rrr_b_r0_x[1], rrr_b_r0_y[1], rrr_base_frame_xx[1],
-            rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1],
-            rrr_base_point_y[1], rrr_branch_1[1], rrr_d_Gamma_2_t[1], rrr_d_Gamma_2_y[1],
-            rrr_d_c_yy[1], rrr_d_phi_2_t[1], rrr_g_r0_x[1], rrr_g_r0_y[1], rrr_h_1_x[1], rrr_h_1_y[1],
-            rrr_h_2_x[1], rrr_h_2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
-            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
-            rrr_rho2_1_t[1], rrr_size[1];
-    fivebar_offset_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
-            h_star_y, legs_size, m_star;
+    fivebar_offset_real inv_rrr_rho2_1_t[1], inv_rrr_size[1], inv_rrr_size_t[1], inv_rrr_size_t_2[1],
+            rrr_J_1_in_spec1_zz[1], rrr_J_2_in_spec2_zz[1], rrr_Jc_1_in_axes1_zz[1], rrr_Kd_1_t[1],
+            rrr_Kd_1_t_2[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1],
+            rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1], rrr_branch_1[1],
+            rrr_d_Gamma_2_in_axes2_y[1], rrr_d_Gamma_2_t[1], rrr_d_c_in_axes2_yy[1], rrr_d_phi_2_t[1],
+            rrr_h_1_in_spec1_x[1], rrr_h_1_in_spec1_y[1], rrr_h_2_in_spec2_x[1],
+            rrr_h_2_in_spec2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
+            rrr_mu_1_t[1], rrr_mu_1_t_2[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
+            rrr_platform_point_y[1], rrr_potential_t[1], rrr_potential_t_2[1], rrr_rho2_1_t[1],
+            rrr_size[1], rrr_w_2_in_axes2_y[1];
+    fivebar_offset_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
+            gravity_y, h_star_in_platform_x, h_star_in_platform_y, legs_size, m_star;
 } fivebar_offset_model;
 
 extern const fivebar_offset_params fivebar_offset_default_params;

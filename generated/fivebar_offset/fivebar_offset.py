@@ -395,7 +395,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -566,82 +566,89 @@ def _prepare(p):
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (crank-n_c) unit vector that the leg's freedoms leave out
-    crank_n_c_t = crank_platform_joint_offset_x*crank_platform_joint_offset_x
-    crank_n_c_x = crank_platform_joint_offset_x/(sqrt(crank_n_c_t))
     # (crank-size) length of the leg's lever arms, the measure of what is near singular
-    crank_size_t = 5.257946636889999e-07 + crank_n_c_t
-    crank_size = sqrt(crank_size_t)
-    # (crank-root_1) amplitude: off the manifold the nearest angle is taken
-    crank_root_1_t = crank_size*crank_size*crank_size_t
-    # (crank-w_1) reciprocal vector 1
-    inv_crank_platform_joint_offset_x = 1.0/crank_platform_joint_offset_x
+    crank_size_t = crank_platform_joint_offset_x*crank_platform_joint_offset_x
+    crank_size_t_2 = 5.257946636889999e-07 + crank_size_t
+    crank_size = sqrt(crank_size_t_2)
+    # (crank-h_1) first moment of link 1 about the origin of link 1
+    crank_h_1_in_spec1_x = crank_link1_centre_of_mass_x*crank_link1_mass
+    crank_h_1_in_spec1_y = crank_link1_centre_of_mass_y*crank_link1_mass
     # (crank-J_1) inertia tensor of link 1 about the origin of link 1
     crank_J_1_t = (
     crank_link1_centre_of_mass_x*crank_link1_centre_of_mass_x +
         crank_link1_centre_of_mass_y*crank_link1_centre_of_mass_y
     )
-    crank_J_1_zz = crank_link1_inertia_zz + crank_J_1_t*crank_link1_mass
+    crank_J_1_in_spec1_zz = crank_link1_inertia_zz + crank_J_1_t*crank_link1_mass
+    # (crank-root_1) amplitude: off the manifold the nearest angle is taken
+    crank_root_1_t = crank_size*crank_size*crank_size_t_2
+    inv_crank_root_1_t = 1.0/crank_root_1_t
+    # (crank-n_c) unit vector that the leg's freedoms leave out
+    crank_n_c_in_axes1_x = -crank_platform_joint_offset_x/(sqrt(crank_size_t))
+    # (crank-w_1) reciprocal vector 1
+    crank_w_1_in_axes1_y = 1.0/crank_platform_joint_offset_x
+    # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
+    crank_mu_1_t = crank_base_frame_xx*gravity_x + crank_base_frame_yx*gravity_y
+    crank_mu_1_t_2 = crank_base_frame_xy*gravity_x + crank_base_frame_yy*gravity_y
     # (crank-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    crank_d_G_yy = (
-    crank_J_1_zz*inv_crank_platform_joint_offset_x*inv_crank_platform_joint_offset_x
-    )
-    # (crank-h_1) first moment of link 1 about the origin of link 1
-    crank_h_1_x = crank_link1_centre_of_mass_x*crank_link1_mass
-    crank_h_1_y = crank_link1_centre_of_mass_y*crank_link1_mass
-    # (crank-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    crank_g_r0_x = crank_base_frame_xx*gravity_x + crank_base_frame_yx*gravity_y
-    crank_g_r0_y = crank_base_frame_xy*gravity_x + crank_base_frame_yy*gravity_y
+    crank_d_G_in_axes1_yy = crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*crank_w_1_in_axes1_y
     # (potential) potential energy
     crank_potential_t = crank_base_point_x*crank_link1_mass
     crank_potential_t_2 = crank_base_point_y*crank_link1_mass
-    # (crank-root_1) amplitude: off the manifold the nearest angle is taken
-    inv_crank_root_1_t_2 = 1.0/crank_root_1_t
-    total_crank_x = np.sum(np.broadcast_to(crank_platform_point_x, _crank))
-    total_crank_y = np.sum(np.broadcast_to(crank_platform_point_y, _crank))
-    total_crank = np.sum(np.broadcast_to(crank_size_t, _crank))
-    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
-    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
+    b_c_crank_in_platform_x = np.sum(np.broadcast_to(crank_platform_point_x, _crank))
+    b_c_crank_in_platform_y = np.sum(np.broadcast_to(crank_platform_point_y, _crank))
+    legs_size_crank = np.sum(np.broadcast_to(crank_size_t_2, _crank))
     # (rrr-size) length of the leg's lever arms, the measure of what is near singular
-    rrr_size_t = 5.257946636889999e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
-    rrr_size = sqrt(rrr_size_t)
-    # (rrr-rho2_1) squared amplitude
-    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
-    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
-    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
-    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
-    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-h_2) first moment of link 2 about the connection point
-    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
-    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-w_2) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
-    # (rrr-J_2) inertia tensor of link 2 about the connection point
-    rrr_J_2_t = (
-    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
-    )
-    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
-    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
-    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_size_t_3 = 5.257946636889999e-07 + rrr_size_t + rrr_size_t_2
+    rrr_size = sqrt(rrr_size_t_3)
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
     # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
     rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x
+    rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+        rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x
+    )
+    rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = 0.5*rrr_size_t
+    rrr_Kd_1_t_2 = 0.5*rrr_size_t_2
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3
+    # (rrr-x_2) from the origin of joint 2 to the connection point
+    inv_rrr_size_t = 1.0/rrr_size_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_size_t_2 = 1.0/rrr_size_t_2
+    # (rrr-w_2) reciprocal vector 2
+    rrr_w_2_in_axes2_y = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y
     # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
-    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
+    rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y
+    rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x
+    # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+    rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_rrr_rho2_1_t = 1.0/rrr_rho2_1_t
+    inv_rrr_size = 1.0/rrr_size
     # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    rrr_d_c_yy = (
-    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
+    rrr_d_c_in_axes2_yy = (
+    -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y - rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y
     )
     # (h_star) first moment about the platform origin
     rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
@@ -651,102 +658,99 @@ def _prepare(p):
     rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x
     rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass
     rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass
-    # (rrr-h_1) first moment of link 1 about the origin of link 1
-    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
     # (potential) potential energy
-    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-rho2_1) squared amplitude
-    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
-    # (rrr-w_1) reciprocal vector 1
-    inv_rrr_size = 1.0/rrr_size
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
-    total_rrr_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
-    total_rrr_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
+    rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    m_star_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    h_star_rrr_in_platform_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    h_star_rrr_in_platform_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
+    J_star_rrr_in_platform_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
+    J_star_rrr_in_platform_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
+    b_c_rrr_in_platform_x = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    b_c_rrr_in_platform_y = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    legs_size_rrr = np.sum(np.broadcast_to(rrr_size_t_3, _rrr))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rrr
+    m_star = m_star_rrr + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_rrr_x
-    h_star_y = h_star_t_2 + total_rrr_y
+    h_star_in_platform_x = h_star_rrr_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_rrr_in_platform_y + h_star_t_2
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = J_star_t_3 + total_rrr_xx
-    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rrr_zz
-    J_star_t_6 = J_star_t_5 - J_star_xx
+    J_star_in_platform_xx = J_star_rrr_in_platform_xx + J_star_t_3
+    J_star_t_5 = (
+    J_star_in_platform_xx - J_star_rrr_in_platform_zz - J_star_t_4 - platform_inertia_zz
+    )
+    J_star_zz = J_star_in_platform_xx - J_star_t_5
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.5*total_crank_x + 0.5*total_rrr_x_2
-    b_c_y = 0.5*total_crank_y + 0.5*total_rrr_y_2
+    b_c_in_platform_x = 0.5*b_c_crank_in_platform_x + 0.5*b_c_rrr_in_platform_x
+    b_c_in_platform_y = 0.5*b_c_crank_in_platform_y + 0.5*b_c_rrr_in_platform_y
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = sqrt(0.5*total_crank + 0.5*total_rrr_2)
+    legs_size = sqrt(0.5*legs_size_crank + 0.5*legs_size_rrr)
     return {
         "dynamics": (
-        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x,
+                h_star_in_platform_y, m_star,),
             (
                 (_crank,
-        (crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
-                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_d_G_yy,
-                    crank_g_r0_x, crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t,
-                    crank_n_c_x, crank_platform_joint_offset_x, crank_platform_point_x,
-                    crank_platform_point_y, crank_root_1_t, inv_crank_platform_joint_offset_x,),
+        (crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y,
+                    crank_d_G_in_axes1_yy, crank_h_1_in_spec1_x, crank_h_1_in_spec1_y,
+                    crank_mu_1_t, crank_mu_1_t_2, crank_n_c_in_axes1_x,
+                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
+                    crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
+                    rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
-                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t,
+                    rrr_d_c_in_axes2_yy, rrr_d_phi_2_t, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+                    rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t,
+                    rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_6, h_star_x, h_star_y, m_star,),
+        (J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_d_G_yy, crank_n_c_t,
+                    crank_base_point_x, crank_base_point_y, crank_d_G_in_axes1_yy,
                     crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t,),
+                    crank_root_1_t, crank_size_t,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
-                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy, rrr_d_phi_2_t,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+                    rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
         "Z": (
-        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
+        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,),
             (
                 (_crank,
-        (crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
-                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
-                    crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t,
+        (crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y,
+                    crank_h_1_in_spec1_x, crank_h_1_in_spec1_y, crank_mu_1_t, crank_mu_1_t_2,
                     crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
+                    crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -755,12 +759,12 @@ def _prepare(p):
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_n_c_t,
-                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
+                    crank_base_point_x, crank_base_point_y, crank_platform_joint_offset_x,
+                    crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
+                    crank_w_1_in_axes1_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
@@ -773,9 +777,9 @@ def _prepare(p):
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_in_axes1_x,
                     crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t,),
+                    crank_root_1_t, crank_size_t,),
                 ),
             ),
         ),
@@ -784,29 +788,30 @@ def _prepare(p):
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_in_axes1_x,
                     crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
+                    crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,),
                 ),
             ),
         ),
         "required": (
-        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_crank,
-        (crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
-                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
-                    crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
-                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
+        (crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y,
+                    crank_h_1_in_spec1_x, crank_h_1_in_spec1_y, crank_mu_1_t, crank_mu_1_t_2,
+                    crank_n_c_in_axes1_x, crank_platform_joint_offset_x, crank_platform_point_x,
+                    crank_platform_point_y, crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -815,12 +820,12 @@ def _prepare(p):
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_n_c_t,
-                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t,),
+                    crank_base_point_x, crank_base_point_y, crank_platform_joint_offset_x,
+                    crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
+                    crank_size_t,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
@@ -833,16 +838,16 @@ def _prepare(p):
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_n_c_t,
-                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
+                    crank_base_point_x, crank_base_point_y, crank_platform_joint_offset_x,
+                    crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
+                    crank_w_1_in_axes1_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -851,16 +856,16 @@ def _prepare(p):
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_n_c_t,
-                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
+                    crank_base_point_x, crank_base_point_y, crank_platform_joint_offset_x,
+                    crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
+                    crank_w_1_in_axes1_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -869,9 +874,9 @@ def _prepare(p):
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_in_axes1_x,
                     crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t,),
+                    crank_root_1_t, crank_size_t,),
                 ),
             ),
         ),
@@ -879,53 +884,55 @@ def _prepare(p):
         (gravity_x, gravity_y,),
             (
                 (_crank,
-        (crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
-                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
-                    crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
-                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t, inv_crank_platform_joint_offset_x,),
+        (crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+                    crank_base_frame_yy, crank_base_point_x, crank_base_point_y,
+                    crank_h_1_in_spec1_x, crank_h_1_in_spec1_y, crank_mu_1_t, crank_mu_1_t_2,
+                    crank_n_c_in_axes1_x, crank_platform_joint_offset_x, crank_platform_point_x,
+                    crank_platform_point_y, crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_mu_1_t,
+                    rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_h_1_x, crank_h_1_y, crank_n_c_t,
-                    crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_potential_t, crank_potential_t_2, crank_root_1_t,),
+                    crank_base_point_x, crank_base_point_y, crank_h_1_in_spec1_x,
+                    crank_h_1_in_spec1_y, crank_platform_joint_offset_x, crank_platform_point_x,
+                    crank_platform_point_y, crank_potential_t, crank_potential_t_2,
+                    crank_root_1_t, crank_size_t,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
-                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
-                    rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+                    rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link1_mass,
+                    rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, legs_size,),
+        (b_c_in_platform_x, b_c_in_platform_y, legs_size,),
             (
                 (_crank,
         (crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-                    crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+                    crank_base_point_x, crank_base_point_y, crank_n_c_in_axes1_x,
                     crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-                    crank_root_1_t, inv_crank_platform_joint_offset_x, inv_crank_root_1_t_2,),
+                    crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y, inv_crank_root_1_t,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        (inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
                     rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
                     rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
                     rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
@@ -1398,7 +1405,10 @@ def _run_dynamics(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    (
+    J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,
+        m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1420,142 +1430,142 @@ def _run_dynamics(m, X, V):
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
-            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_d_G_yy,
-            crank_g_r0_x, crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
-            crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_root_1_t, inv_crank_platform_joint_offset_x,
+        crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_d_G_in_axes1_yy,
+            crank_h_1_in_spec1_x, crank_h_1_in_spec1_y, crank_mu_1_t, crank_mu_1_t_2,
+            crank_n_c_in_axes1_x, crank_platform_joint_offset_x, crank_platform_point_x,
+            crank_platform_point_y, crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
-        # (crank-w_1) reciprocal vector 1
-        axis_y_crank_axes1_in_base_x = (
-        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
-        )
-        axis_y_crank_axes1_in_base_y = (
-        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        )
-        # (crank-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        crank_d_c_t = axis_y_crank_axes1_in_base_x*crank_d_G_yy
-        crank_d_c_t_2 = axis_y_crank_axes1_in_base_x*crank_d_c_t
-        crank_d_c_t_3 = axis_y_crank_axes1_in_base_y*crank_d_c_t
-        crank_d_c_t_4 = axis_y_crank_axes1_in_base_y*axis_y_crank_axes1_in_base_y*crank_d_G_yy
-        # (M_ta) coupling block of M
-        crank_M_ta_t = crank_d_c_t_2*crank_q_in_base_y - crank_d_c_t_3*crank_q_in_base_x
-        crank_M_ta_t_2 = crank_d_c_t_3*crank_q_in_base_y - crank_d_c_t_4*crank_q_in_base_x
-        # (M_aa) rotational block of M
-        crank_M_aa_t = crank_M_ta_t*crank_q_in_base_y - crank_M_ta_t_2*crank_q_in_base_x
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-S_dot) velocity of the connection point
-        crank_S_dot_t = crank_q_in_base_y*omega_z
-        crank_S_dot_t_2 = crank_q_in_base_x*omega_z
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_S_dot_t = crank_q_y*omega_z
+        crank_S_dot_t_2 = crank_q_x*omega_z
         crank_S_dot_x = t_dot_x - crank_S_dot_t
         crank_S_dot_y = crank_S_dot_t_2 + t_dot_y
-        crank_S_dot_tip_y = (
-        axis_y_crank_axes1_in_base_x*crank_S_dot_x + axis_y_crank_axes1_in_base_y*crank_S_dot_y
+        crank_S_dot_in_axes1_y = (
+        axis_x_crank_axes1_x*crank_S_dot_y + axis_y_crank_axes1_x*crank_S_dot_x
         )
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
+        crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
+        # (crank-w_1) reciprocal vector 1
+        crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y
+        crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y
         # (crank-u_1) centripetal acceleration of the connection point
-        crank_u_1_t = crank_S_dot_t_2*omega_z
-        crank_u_1_t_2 = crank_S_dot_t*omega_z
+        crank_u_1_x = -crank_S_dot_t_2*omega_z
+        crank_u_1_t = crank_S_dot_t*omega_z
         # (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        crank_rel_o_x = (
-        axis_y_crank_axes1_in_base_x*crank_u_1_t_2 +
-            crank_S_dot_tip_y*crank_S_dot_tip_y*inv_crank_platform_joint_offset_x -
-            axis_y_crank_axes1_in_base_y*crank_u_1_t
+        crank_rel_o_in_axes1_x = (
+        axis_x_crank_axes1_x*crank_u_1_x + axis_y_crank_axes1_x*crank_u_1_t +
+            crank_S_dot_in_axes1_y*crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y
         )
         # (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        crank_mu_1_o_z = (
-        crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
-            crank_J_1_zz*inv_crank_platform_joint_offset_x*(-axis_y_crank_axes1_in_base_x*crank_u_1_t
-            - axis_y_crank_axes1_in_base_y*crank_u_1_t_2) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
-            crank_g_r0_x*crank_s_1)
+        crank_mu_1_o_in_axes1_z = (
+        crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1) +
+            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_y_crank_axes1_x*crank_u_1_x -
+            axis_x_crank_axes1_x*crank_u_1_t) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 -
+            crank_mu_1_t*crank_s_1)
         )
         # (crank-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        crank_G_o_t = crank_mu_1_o_z*inv_crank_platform_joint_offset_x
+        crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y
+        # (crank-Q) inertia of the leg at the connection point, without the mass gathered there
+        crank_Q_t = axis_y_crank_axes1_x*crank_d_G_in_axes1_yy
+        crank_Q_xx = axis_y_crank_axes1_x*crank_Q_t
+        crank_Q_xy = axis_x_crank_axes1_x*crank_Q_t
+        crank_Q_yy = axis_x_crank_axes1_x*axis_x_crank_axes1_x*crank_d_G_in_axes1_yy
         # (crank-U) velocity and gravity terms of the leg force
-        crank_U_t = axis_y_crank_axes1_in_base_x*crank_G_o_t
-        crank_U_t_2 = axis_y_crank_axes1_in_base_y*crank_G_o_t
+        crank_U_x = axis_y_crank_axes1_x*crank_G_o_in_axes1_y
+        crank_U_y = axis_x_crank_axes1_x*crank_G_o_in_axes1_y
+        # (M_ta) coupling block of M
+        crank_M_ta_t = crank_Q_xy*crank_q_x - crank_Q_xx*crank_q_y
+        crank_M_ta_t_2 = crank_Q_yy*crank_q_x - crank_Q_xy*crank_q_y
+        # (M_aa) rotational block of M
+        crank_M_aa_t = crank_M_ta_t_2*crank_q_x - crank_M_ta_t*crank_q_y
         # (Z_a) rotational part of Z
-        crank_Z_a_t = crank_U_t_2*crank_q_in_base_x - crank_U_t*crank_q_in_base_y
-        # (crank-w_1) reciprocal vector 1
-        crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x
-        crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x
+        crank_Z_a_t = crank_U_y*crank_q_x - crank_U_x*crank_q_y
         # (crank-H_a_1) moment of the column's unit force about the platform origin
-        crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 - crank_q_in_base_y*crank_w_1_t
-        # (crank-n_c) unit vector that the leg's freedoms leave out
-        crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x
-        crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x
+        crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
-        crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y + crank_n_c_t_3*crank_q_in_base_x
+        crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y
         # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-        crank_gamma_c1_t = crank_n_c_x*crank_rel_o_x
+        crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        crank_d_c_t_2, crank_d_c_t_3, crank_d_c_t_4, crank_M_ta_t, crank_M_ta_t_2,
-            crank_M_aa_t, crank_U_t, crank_U_t_2, crank_Z_a_t,
+        crank_Q_xx, crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2, crank_M_aa_t,
+            crank_U_x, crank_U_y, crank_Z_a_t,
         ))
-        out_H[_H_crank[0][leg]] = crank_w_1_t
-        out_H[_H_crank[1][leg]] = crank_w_1_t_2
+        # (crank-w_1) reciprocal vector 1
+        out_H[_H_crank[0][leg]] = crank_w_1_x
+        out_H[_H_crank[1][leg]] = crank_w_1_y
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crank[2][leg]] = crank_H_a_1_z
-        out_Hk[_Hk_crank[0][leg]] = -crank_n_c_t_2
-        out_Hk[_Hk_crank[1][leg]] = crank_n_c_t_3
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        out_Hk[_Hk_crank[0][leg]] = crank_n_c_x
+        out_Hk[_Hk_crank[1][leg]] = crank_n_c_y
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
-        out_constraint_bias[_constraint_bias_crank[0][leg]] = -crank_gamma_c1_t
+        # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        out_constraint_bias[_constraint_bias_crank[0][leg]] = crank_gamma_c1
     (
-    total_crank_xx, total_crank_xy, total_crank_yy, total_crank_xz, total_crank_yz,
-        total_crank_zz, total_crank_x, total_crank_y, total_crank_z,
+    M_tt_crank_xx, M_tt_crank_xy, M_tt_crank_yy, M_ta_crank_xz, M_ta_crank_yz, M_aa_crank_zz,
+        Z_t_crank_x, Z_t_crank_y, Z_a_crank_z,
     ) = sums
     sums = [0.0] * 9
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
-            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
+            rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+            rrr_d_phi_2_t, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+            rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1564,183 +1574,187 @@ def _run_dynamics(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
-        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
-        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
-        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = (
-        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
-            rrr_d_Gamma_2_x*rrr_w_2_t
-        )
-        rrr_Q_t_2 = 0.5*rrr_Q_t
-        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
-        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
-        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
-        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
-        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
-        # (M_ta) coupling block of M
-        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
-        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
-        # (M_aa) rotational block of M
-        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
-        )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_t = omega_z*rrr_S_dot_t_2
-        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
+        rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
+        rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_tip_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
-        )
-        rrr_u_1_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
-        )
         # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
-        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1_o) remainder of the acceleration tensor of link 1
+        rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrr_alpha_2_o_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
+        rrr_alpha_2_o_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_o_in_axes1_xy
         )
         # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_x = (
-        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
+        rrr_acc_2_o_in_axes2_x = (
+        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
-        rrr_acc_2_o_y = (
-        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
+        rrr_acc_2_o_in_axes2_y = (
+        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_o_z = (
-        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
+        rrr_mu_2_o_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
+        )
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
+        rrr_d_Gamma_2_in_axes2_x = (
+        rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_o_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_in_axes2_x = (
+        rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        )
         # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_in_axes2_xy = (
+        rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
+        )
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_o_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
-            - rrr_N_1_o_z)
+        rrr_c_o_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
-        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        rrr_c_o_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        )
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
+            rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
+        )
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (rrr-U) velocity and gravity terms of the leg force
-        rrr_U_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
-        )
-        rrr_U_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
-        )
+        rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
+        rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
+        rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y
         # (Z_a) rotational part of Z
-        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
-            rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
+        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
+            rrr_Z_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     (
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
-        total_rrr_x, total_rrr_y, total_rrr_z,
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz, Z_t_rrr_x,
+        Z_t_rrr_y, Z_a_rrr_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star + total_crank_xx - total_rrr_xx
-    M_tt_xy = total_crank_xy + total_rrr_xy
-    M_tt_yy = m_star + total_crank_yy - total_rrr_yy
+    M_tt_xx = M_tt_crank_xx + M_tt_rrr_xx + m_star
+    M_tt_xy = M_tt_crank_xy + M_tt_rrr_xy
+    M_tt_yy = M_tt_crank_yy + M_tt_rrr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_crank_xz
-    M_ta_yz = h_star_in_base_x - total_crank_yz - total_rrr_yz
+    M_ta_xz = M_ta_crank_xz + M_ta_rrr_xz - h_star_y
+    M_ta_yz = M_ta_crank_yz + M_ta_rrr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = total_crank_zz - J_star_t_6 - total_rrr_zz
+    M_aa_zz = J_star_zz + M_aa_crank_zz + M_aa_rrr_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_crank_x + total_rrr_x
-    Z_t_y = Z_p_y + total_crank_y + total_rrr_y
+    Z_t_x = Z_p_x + Z_t_crank_x + Z_t_rrr_x
+    Z_t_y = Z_p_y + Z_t_crank_y + Z_t_rrr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_crank_z + total_rrr_z - Z_q_t
+    Z_a_z = Z_a_crank_z + Z_a_rrr_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
     out_M[4] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[6] = M_ta_xz
     out_M[5] = M_ta_yz
     out_M[7] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[8] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
@@ -1751,7 +1765,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_6, h_star_x, h_star_y, m_star = shared
+    J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1763,82 +1777,76 @@ def _run_M(m, X):
     ok = True
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_d_G_yy, crank_n_c_t,
+            crank_base_point_x, crank_base_point_y, crank_d_G_in_axes1_yy,
             crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_root_1_t,
+            crank_root_1_t, crank_size_t,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
-        # (crank-w_1) reciprocal vector 1
-        axis_y_crank_axes1_in_base_x = (
-        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
-        )
-        axis_y_crank_axes1_in_base_y = (
-        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        )
-        # (crank-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        crank_d_c_t = axis_y_crank_axes1_in_base_x*crank_d_G_yy
-        crank_d_c_t_2 = axis_y_crank_axes1_in_base_x*crank_d_c_t
-        crank_d_c_t_3 = axis_y_crank_axes1_in_base_y*crank_d_c_t
-        crank_d_c_t_4 = axis_y_crank_axes1_in_base_y*axis_y_crank_axes1_in_base_y*crank_d_G_yy
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
+        # (crank-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_Q_t = axis_y_crank_axes1_x*crank_d_G_in_axes1_yy
+        crank_Q_xx = axis_y_crank_axes1_x*crank_Q_t
+        crank_Q_xy = axis_x_crank_axes1_x*crank_Q_t
+        crank_Q_yy = axis_x_crank_axes1_x*axis_x_crank_axes1_x*crank_d_G_in_axes1_yy
         # (M_ta) coupling block of M
-        crank_M_ta_t = crank_d_c_t_2*crank_q_in_base_y - crank_d_c_t_3*crank_q_in_base_x
-        crank_M_ta_t_2 = crank_d_c_t_3*crank_q_in_base_y - crank_d_c_t_4*crank_q_in_base_x
+        crank_M_ta_t = crank_Q_xy*crank_q_x - crank_Q_xx*crank_q_y
+        crank_M_ta_t_2 = crank_Q_yy*crank_q_x - crank_Q_xy*crank_q_y
         # (M_aa) rotational block of M
-        crank_M_aa_t = crank_M_ta_t*crank_q_in_base_y - crank_M_ta_t_2*crank_q_in_base_x
+        crank_M_aa_t = crank_M_ta_t_2*crank_q_x - crank_M_ta_t*crank_q_y
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        crank_d_c_t_2, crank_d_c_t_3, crank_d_c_t_4, crank_M_ta_t, crank_M_ta_t_2,
-            crank_M_aa_t,
+        crank_Q_xx, crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2, crank_M_aa_t,
         ))
     (
-    total_crank_xx, total_crank_xy, total_crank_yy, total_crank_xz, total_crank_yz,
-        total_crank_zz,
+    M_tt_crank_xx, M_tt_crank_xy, M_tt_crank_yy, M_ta_crank_xz, M_ta_crank_yz, M_aa_crank_zz,
     ) = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
-            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy, rrr_d_phi_2_t,
+            rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1847,84 +1855,91 @@ def _run_M(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
-        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
-        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = (
-        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
-            rrr_d_Gamma_2_x*rrr_w_2_t
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
+        rrr_d_Gamma_2_in_axes2_x = (
+        rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
-        rrr_Q_t_2 = 0.5*rrr_Q_t
-        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
-        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
-        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
-        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
-        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_in_axes2_x = (
+        rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        )
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_in_axes2_xy = (
+        rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
+        )
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
+        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
+        rrr_Q_t_3 = (
+        rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
+            rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
+        )
+        rrr_Q_t_4 = 0.5*rrr_Q_t_3
+        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
         # (M_ta) coupling block of M
-        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
-        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
+        rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
         # (M_aa) rotational block of M
-        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
+        rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
+        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
         ))
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz = sums
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star + total_crank_xx - total_rrr_xx
-    M_tt_xy = total_crank_xy + total_rrr_xy
-    M_tt_yy = m_star + total_crank_yy - total_rrr_yy
+    M_tt_xx = M_tt_crank_xx + M_tt_rrr_xx + m_star
+    M_tt_xy = M_tt_crank_xy + M_tt_rrr_xy
+    M_tt_yy = M_tt_crank_yy + M_tt_rrr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_crank_xz
-    M_ta_yz = h_star_in_base_x - total_crank_yz - total_rrr_yz
+    M_ta_xz = M_ta_crank_xz + M_ta_rrr_xz - h_star_y
+    M_ta_yz = M_ta_crank_yz + M_ta_rrr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = total_crank_zz - J_star_t_6 - total_rrr_zz
+    M_aa_zz = J_star_zz + M_aa_crank_zz + M_aa_rrr_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
     out_M[4] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[6] = M_ta_xz
     out_M[5] = M_ta_yz
     out_M[7] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[8] = M_aa_zz
     return ok, (out_M,)
 
@@ -1935,7 +1950,7 @@ def _run_Z(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
-    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y = shared
+    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1953,91 +1968,87 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
-            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
-            crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_platform_joint_offset_x,
-            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
-            inv_crank_platform_joint_offset_x,
+        crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_h_1_in_spec1_x,
+            crank_h_1_in_spec1_y, crank_mu_1_t, crank_mu_1_t_2, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
+            crank_w_1_in_axes1_y,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
-        # (crank-w_1) reciprocal vector 1
-        axis_y_crank_axes1_in_base_x = (
-        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
-        )
-        axis_y_crank_axes1_in_base_y = (
-        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        )
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        crank_mu_1_o_z = (
-        crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
-            crank_J_1_zz*inv_crank_platform_joint_offset_x*(-axis_y_crank_axes1_in_base_x*crank_q_in_base_x*omega_z*omega_z
-            - axis_y_crank_axes1_in_base_y*crank_q_in_base_y*omega_z*omega_z) -
-            crank_h_1_x*(crank_c_1*crank_g_r0_y - crank_g_r0_x*crank_s_1)
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_mu_1_o_in_axes1_z = (
+        crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1) +
+            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(-axis_x_crank_axes1_x*crank_q_y*omega_z*omega_z
+            - axis_y_crank_axes1_x*crank_q_x*omega_z*omega_z) -
+            crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1)
         )
         # (crank-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        crank_G_o_t = crank_mu_1_o_z*inv_crank_platform_joint_offset_x
+        crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-U) velocity and gravity terms of the leg force
-        crank_U_t = axis_y_crank_axes1_in_base_x*crank_G_o_t
-        crank_U_t_2 = axis_y_crank_axes1_in_base_y*crank_G_o_t
+        crank_U_x = axis_y_crank_axes1_x*crank_G_o_in_axes1_y
+        crank_U_y = axis_x_crank_axes1_x*crank_G_o_in_axes1_y
         # (Z_a) rotational part of Z
-        crank_Z_a_t = crank_U_t_2*crank_q_in_base_x - crank_U_t*crank_q_in_base_y
+        crank_Z_a_t = crank_U_y*crank_q_x - crank_U_x*crank_q_y
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        crank_U_t, crank_U_t_2, crank_Z_a_t,
+        crank_U_x, crank_U_y, crank_Z_a_t,
         ))
-    total_crank_x, total_crank_y, total_crank_z = sums
+    Z_t_crank_x, Z_t_crank_y, Z_a_crank_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2046,128 +2057,120 @@ def _run_Z(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
-        )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_t = omega_z*rrr_S_dot_t_2
-        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
+        rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
+        rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_tip_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
-        )
-        rrr_u_1_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
-        )
         # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
-        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1_o) remainder of the acceleration tensor of link 1
+        rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrr_alpha_2_o_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
+        rrr_alpha_2_o_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_o_in_axes1_xy
         )
         # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_x = (
-        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
+        rrr_acc_2_o_in_axes2_x = (
+        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
-        rrr_acc_2_o_y = (
-        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
+        rrr_acc_2_o_in_axes2_y = (
+        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_o_z = (
-        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
+        rrr_mu_2_o_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_o_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_o_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
-            - rrr_N_1_o_z)
+        rrr_c_o_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
-        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        rrr_c_o_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        )
         # (rrr-U) velocity and gravity terms of the leg force
-        rrr_U_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
-        )
-        rrr_U_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
-        )
+        rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
+        rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
         # (Z_a) rotational part of Z
-        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
+        rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
+        rrr_U_x, rrr_U_y, rrr_Z_a_t,
         ))
-    total_rrr_x, total_rrr_y, total_rrr_z = sums
+    Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_crank_x + total_rrr_x
-    Z_t_y = Z_p_y + total_crank_y + total_rrr_y
+    Z_t_x = Z_p_x + Z_t_crank_x + Z_t_rrr_x
+    Z_t_y = Z_p_y + Z_t_crank_y + Z_t_rrr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_crank_z + total_rrr_z - Z_q_t
+    Z_a_z = Z_a_crank_z + Z_a_rrr_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_Z,)
 
@@ -2191,62 +2194,62 @@ def _run_H(m, X):
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_platform_joint_offset_x,
-            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
-            inv_crank_platform_joint_offset_x,
+            crank_base_point_x, crank_base_point_y, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
+            crank_w_1_in_axes1_y,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-w_1) reciprocal vector 1
-        crank_w_1_t = (
-        inv_crank_platform_joint_offset_x*(crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1)
+        crank_w_1_x = (
+        crank_w_1_in_axes1_y*(crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1)
         )
-        crank_w_1_t_2 = (
-        inv_crank_platform_joint_offset_x*(crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1)
+        crank_w_1_y = (
+        crank_w_1_in_axes1_y*(crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1)
         )
         # (crank-H_a_1) moment of the column's unit force about the platform origin
-        crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 - crank_q_in_base_y*crank_w_1_t
+        crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        out_H[_H_crank[0][leg]] = crank_w_1_t
-        out_H[_H_crank[1][leg]] = crank_w_1_t_2
+        # (crank-w_1) reciprocal vector 1
+        out_H[_H_crank[0][leg]] = crank_w_1_x
+        out_H[_H_crank[1][leg]] = crank_w_1_y
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crank[2][leg]] = crank_H_a_1_z
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
             rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2255,42 +2258,44 @@ def _run_H(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        rrr_w_1_t = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        rrr_w_1_t_2 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = (
+        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
+        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = (
+        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
+        )
+        rrr_w_1_y = (
+        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
         )
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     return ok, (out_H,)
 
@@ -2314,38 +2319,40 @@ def _run_Hk(m, X):
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+            crank_base_point_x, crank_base_point_y, crank_n_c_in_axes1_x,
             crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_root_1_t,
+            crank_root_1_t, crank_size_t,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-n_c) unit vector that the leg's freedoms leave out
-        crank_n_c_t_2 = (
-        crank_n_c_x*(crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1)
+        crank_n_c_x = (
+        crank_n_c_in_axes1_x*(crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1)
         )
-        crank_n_c_t_3 = (
-        crank_n_c_x*(crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1)
+        crank_n_c_y = (
+        -crank_n_c_in_axes1_x*(crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1)
         )
         # (crank-Hk_a_1) moment of the column's unit force about the platform origin
-        crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y + crank_n_c_t_3*crank_q_in_base_x
+        crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        out_Hk[_Hk_crank[0][leg]] = -crank_n_c_t_2
-        out_Hk[_Hk_crank[1][leg]] = crank_n_c_t_3
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        out_Hk[_Hk_crank[0][leg]] = crank_n_c_x
+        out_Hk[_Hk_crank[1][leg]] = crank_n_c_y
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
     return ok, (out_Hk,)
 
@@ -2376,51 +2383,47 @@ def _run_constraint_bias(m, X, V):
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+            crank_base_point_x, crank_base_point_y, crank_n_c_in_axes1_x,
             crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_root_1_t, inv_crank_platform_joint_offset_x,
+            crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
-        # (crank-w_1) reciprocal vector 1
-        axis_y_crank_axes1_in_base_x = (
-        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
-        )
-        axis_y_crank_axes1_in_base_y = (
-        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        )
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-S_dot) velocity of the connection point
-        crank_S_dot_t = crank_q_in_base_y*omega_z
-        crank_S_dot_t_2 = crank_q_in_base_x*omega_z
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_S_dot_t = crank_q_y*omega_z
+        crank_S_dot_t_2 = crank_q_x*omega_z
         crank_S_dot_x = t_dot_x - crank_S_dot_t
         crank_S_dot_y = crank_S_dot_t_2 + t_dot_y
-        crank_S_dot_tip_y = (
-        axis_y_crank_axes1_in_base_x*crank_S_dot_x + axis_y_crank_axes1_in_base_y*crank_S_dot_y
+        crank_S_dot_in_axes1_y = (
+        axis_x_crank_axes1_x*crank_S_dot_y + axis_y_crank_axes1_x*crank_S_dot_x
         )
         # (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        crank_rel_o_x = (
-        crank_S_dot_tip_y*crank_S_dot_tip_y*inv_crank_platform_joint_offset_x +
-            axis_y_crank_axes1_in_base_x*crank_S_dot_t*omega_z -
-            axis_y_crank_axes1_in_base_y*crank_S_dot_t_2*omega_z
+        crank_rel_o_in_axes1_x = (
+        crank_S_dot_in_axes1_y*crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y +
+            axis_y_crank_axes1_x*crank_S_dot_t*omega_z -
+            axis_x_crank_axes1_x*crank_S_dot_t_2*omega_z
         )
         # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-        crank_gamma_c1_t = crank_n_c_x*crank_rel_o_x
+        crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        out_constraint_bias[_constraint_bias_crank[0][leg]] = -crank_gamma_c1_t
+        # (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        out_constraint_bias[_constraint_bias_crank[0][leg]] = crank_gamma_c1
     return ok, (out_constraint_bias,)
 
 
@@ -2430,7 +2433,7 @@ def _run_required(m, X, V, A):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2457,115 +2460,116 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
-    f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
+    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
-    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
+    mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
-            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
-            crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
+        crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_h_1_in_spec1_x,
+            crank_h_1_in_spec1_y, crank_mu_1_t, crank_mu_1_t_2, crank_n_c_in_axes1_x,
             crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_root_1_t, inv_crank_platform_joint_offset_x,
+            crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
-        # (crank-w_1) reciprocal vector 1
-        axis_y_crank_axes1_in_base_x = (
-        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
-        )
-        axis_y_crank_axes1_in_base_y = (
-        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        )
-        crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x
-        crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x
-        # (crank-H_a_1) moment of the column's unit force about the platform origin
-        crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 - crank_q_in_base_y*crank_w_1_t
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-n_c) unit vector that the leg's freedoms leave out
-        crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x
-        crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x
-        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
-        crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y + crank_n_c_t_3*crank_q_in_base_x
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
+        crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
+        # (crank-w_1) reciprocal vector 1
+        crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y
+        crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y
         # (crank-a_p) acceleration of the connection point without its centripetal part
-        crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y
-        crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x
+        crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
+        crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z
+        crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z
         # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        crank_mu_1_z = (
-        crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
-            crank_J_1_zz*inv_crank_platform_joint_offset_x*(axis_y_crank_axes1_in_base_x*crank_S_ddot_x
-            + axis_y_crank_axes1_in_base_y*crank_S_ddot_y) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
-            crank_g_r0_x*crank_s_1)
+        crank_mu_1_in_axes1_z = (
+        crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1) +
+            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
+            axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
+            - crank_mu_1_t*crank_s_1)
         )
         # (crank-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        crank_G_t = crank_mu_1_z*inv_crank_platform_joint_offset_x
+        crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-c) leg force on the platform without actuation and without the mass at the connection point
-        crank_c_t = axis_y_crank_axes1_in_base_x*crank_G_t
-        crank_c_t_2 = axis_y_crank_axes1_in_base_y*crank_G_t
+        crank_c_t = axis_y_crank_axes1_x*crank_G_in_axes1_y
+        crank_c_t_2 = axis_x_crank_axes1_x*crank_G_in_axes1_y
         # (R_a) moment that actuators and external wrench must give
-        crank_R_a_t = crank_c_t_2*crank_q_in_base_x - crank_c_t*crank_q_in_base_y
+        crank_R_a_t = crank_c_t_2*crank_q_x - crank_c_t*crank_q_y
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
+        crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
+        crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
         crank_c_t, crank_c_t_2, crank_R_a_t,
         ))
-        out_H[_H_crank[0][leg]] = crank_w_1_t
-        out_H[_H_crank[1][leg]] = crank_w_1_t_2
+        # (crank-w_1) reciprocal vector 1
+        out_H[_H_crank[0][leg]] = crank_w_1_x
+        out_H[_H_crank[1][leg]] = crank_w_1_y
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crank[2][leg]] = crank_H_a_1_z
-        out_Hk[_Hk_crank[0][leg]] = -crank_n_c_t_2
-        out_Hk[_Hk_crank[1][leg]] = crank_n_c_t_3
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        out_Hk[_Hk_crank[0][leg]] = crank_n_c_x
+        out_Hk[_Hk_crank[1][leg]] = crank_n_c_y
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
-    total_crank_x, total_crank_y, total_crank_z = sums
+    R_t_crank_x, R_t_crank_y, R_a_crank_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2574,131 +2578,131 @@ def _run_required(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
-        # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        rrr_S_ddot_tip_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
-        )
-        rrr_S_ddot_tip_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
-        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_x = (
-        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
-        )
-        rrr_acc_2_y = (
-        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1) acceleration tensor of link 1
+        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        rrr_alpha_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_in_axes1_xy
+        )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_in_axes2_x = (
+        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
+        )
+        rrr_acc_2_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        rrr_mu_2_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
+        )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
-            rrr_N_1_z)
+        rrr_c_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
-        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
-        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
-        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
+        rrr_c_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        )
+        rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
+        rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
         # (R_a) moment that actuators and external wrench must give
-        rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y
+        rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_c_in_base_x, rrr_c_in_base_y, rrr_R_a_t,
+        rrr_c_x, rrr_c_y, rrr_R_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
-    total_rrr_x, total_rrr_y, total_rrr_z = sums
+    R_t_t, R_t_t_2, R_a_rrr_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x + total_crank_x - total_rrr_x
-    R_t_y = f_p_y + total_crank_y - total_rrr_y
+    R_t_x = R_t_crank_x + f_p_x - R_t_t
+    R_t_y = R_t_crank_y + f_p_y - R_t_t_2
     # (R_a) moment that actuators and external wrench must give
-    R_a_z = mu_p_z + total_crank_z - total_rrr_z
+    R_a_z = R_a_crank_z + R_a_rrr_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
+    # (R_a) moment that actuators and external wrench must give
     out_required[2] = R_a_z
     return ok, (out_required, out_H, out_Hk,)
 
@@ -2723,8 +2727,8 @@ def _run_inverse_kinematics(m, X):
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_platform_joint_offset_x,
-            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
+            crank_base_point_x, crank_base_point_y, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
         ) = k
         # (crank-S) from the base point to the connection point
         crank_S_x = (
@@ -2737,20 +2741,20 @@ def _run_inverse_kinematics(m, X):
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
         # (crank-q_1) displacement of joint 1
+        crank_q_1_t = 1.0/(sqrt(crank_rho2_1))
         crank_q_1 = (
-        atan2(crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1,
-            crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1)
+        atan2(crank_platform_joint_offset_x*crank_q_1_t*crank_rho2_1_t,
+            crank_platform_joint_offset_x*crank_q_1_t*crank_rho2_1_t_2)
         )
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        # (crank-q_1) displacement of joint 1
         out_q[_q_crank[0][leg]] = crank_q_1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
             rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
@@ -2759,14 +2763,14 @@ def _run_inverse_kinematics(m, X):
         rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
         rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2775,25 +2779,26 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         # (rrr-q_1) displacement of joint 1
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_q_1 = (
         atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
             inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
         )
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
         # (rrr-q_2) displacement of joint 2
         rrr_q_2 = (
-        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
+        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
+        # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
+        # (rrr-q_2) displacement of joint 2
         out_q[_q_rrr[1][leg]] = rrr_q_2
     return ok, (out_q,)
 
@@ -2824,59 +2829,60 @@ def _run_joint_rates(m, X, V):
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_platform_joint_offset_x,
-            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
-            inv_crank_platform_joint_offset_x,
+            crank_base_point_x, crank_base_point_y, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
+            crank_w_1_in_axes1_y,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-S_dot) velocity of the connection point
-        crank_S_dot_x = t_dot_x - crank_q_in_base_y*omega_z
-        crank_S_dot_y = t_dot_y + crank_q_in_base_x*omega_z
+        crank_S_dot_x = t_dot_x - crank_q_y*omega_z
+        crank_S_dot_y = t_dot_y + crank_q_x*omega_z
         # (crank-qd_1) rate of joint 1
         crank_qd_1 = (
-        inv_crank_platform_joint_offset_x*(crank_S_dot_x*(crank_base_frame_xy*crank_c_1 -
+        crank_w_1_in_axes1_y*(crank_S_dot_x*(crank_base_frame_xy*crank_c_1 -
             crank_base_frame_xx*crank_s_1) + crank_S_dot_y*(crank_base_frame_yy*crank_c_1 -
             crank_base_frame_yx*crank_s_1))
         )
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        # (crank-qd_1) rate of joint 1
         out_qd[_qd_crank[0][leg]] = crank_qd_1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2885,50 +2891,46 @@ def _run_joint_rates(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y
-        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x
-        # (rrr-qd_2) rate of joint 2
+        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y
+        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y
+        -(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y
         )
+        # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
-            rrr_r_1_t*rrr_s_2))
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        # (rrr-qd_1) rate of joint 1
+        out_qd[_qd_rrr[0][leg]] = rrr_qd_1
+        # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
 
@@ -2966,62 +2968,63 @@ def _run_joint_accelerations(m, X, V, A):
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_platform_joint_offset_x,
-            crank_platform_point_x, crank_platform_point_y, crank_root_1_t,
-            inv_crank_platform_joint_offset_x,
+            crank_base_point_x, crank_base_point_y, crank_platform_joint_offset_x,
+            crank_platform_point_x, crank_platform_point_y, crank_root_1_t, crank_size_t,
+            crank_w_1_in_axes1_y,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-a_p) acceleration of the connection point without its centripetal part
-        crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y
-        crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x
+        crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
+        crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z
+        crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z
         # (crank-qdd_1) acceleration of joint 1
         crank_qdd_1 = (
-        inv_crank_platform_joint_offset_x*(crank_S_ddot_x*(crank_base_frame_xy*crank_c_1 -
+        crank_w_1_in_axes1_y*(crank_S_ddot_x*(crank_base_frame_xy*crank_c_1 -
             crank_base_frame_xx*crank_s_1) + crank_S_ddot_y*(crank_base_frame_yy*crank_c_1 -
             crank_base_frame_yx*crank_s_1))
         )
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        # (crank-qdd_1) acceleration of joint 1
         out_qdd[_qdd_crank[0][leg]] = crank_qdd_1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3030,79 +3033,76 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        rrr_rel_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y +
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_in_axes2_x = (
+        axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        )
+        rrr_rel_in_axes2_y = (
+        axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x -
             rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         )
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        # (rrr-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1_t
+        # (rrr-qdd_2) acceleration of joint 2
         out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     return ok, (out_qdd,)
 
@@ -3126,9 +3126,9 @@ def _run_constraints(m, X):
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+            crank_base_point_x, crank_base_point_y, crank_n_c_in_axes1_x,
             crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_root_1_t,
+            crank_root_1_t, crank_size_t,
         ) = k
         # (crank-S) from the base point to the connection point
         crank_S_x = (
@@ -3141,18 +3141,18 @@ def _run_constraints(m, X):
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
         # (crank-phi_c1) distance by which the leg misses the platform, along a direction left out
-        crank_phi_c1_t = (
-        crank_n_c_x*(crank_platform_joint_offset_x*crank_rho2_1_t*crank_rho2_1_t*inv_crank_root_1
-            + crank_platform_joint_offset_x*crank_rho2_1_t_2*crank_rho2_1_t_2*inv_crank_root_1 -
+        crank_phi_c1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_phi_c1 = (
+        crank_n_c_in_axes1_x*(crank_phi_c1_t*crank_platform_joint_offset_x*crank_rho2_1_t*crank_rho2_1_t
+            + crank_phi_c1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2*crank_rho2_1_t_2 -
             crank_platform_joint_offset_x)
         )
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
-        out_constraints[_constraints_crank[0][leg]] = -crank_phi_c1_t
+        # (crank-phi_c1) distance by which the leg misses the platform, along a direction left out
+        out_constraints[_constraints_crank[0][leg]] = crank_phi_c1
     return ok, (out_constraints,)
 
 
@@ -3191,88 +3191,88 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        crank_J_1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
-            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_g_r0_x,
-            crank_g_r0_y, crank_h_1_x, crank_h_1_y, crank_n_c_t, crank_n_c_x,
+        crank_J_1_in_spec1_zz, crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx,
+            crank_base_frame_yy, crank_base_point_x, crank_base_point_y, crank_h_1_in_spec1_x,
+            crank_h_1_in_spec1_y, crank_mu_1_t, crank_mu_1_t_2, crank_n_c_in_axes1_x,
             crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_root_1_t, inv_crank_platform_joint_offset_x,
+            crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
-        # (crank-w_1) reciprocal vector 1
-        axis_y_crank_axes1_in_base_x = (
-        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
-        )
-        axis_y_crank_axes1_in_base_y = (
-        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        )
-        crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x
-        crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (crank-n_c) unit vector that the leg's freedoms leave out
-        crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x
-        crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
+        crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
+        # (crank-w_1) reciprocal vector 1
+        crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y
+        crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y
         # (crank-a_p) acceleration of the connection point without its centripetal part
-        crank_a_p_x = t_ddot_x - alpha_z*crank_q_in_base_y
-        crank_a_p_y = t_ddot_y + alpha_z*crank_q_in_base_x
+        crank_a_p_x = t_ddot_x - alpha_z*crank_q_y
+        crank_a_p_y = t_ddot_y + alpha_z*crank_q_x
         # (crank-S_ddot) acceleration of the connection point
-        crank_S_ddot_x = crank_a_p_x - crank_q_in_base_x*omega_z*omega_z
-        crank_S_ddot_y = crank_a_p_y - crank_q_in_base_y*omega_z*omega_z
+        crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z
+        crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z
         # (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        crank_mu_1_z = (
-        crank_h_1_y*(crank_c_1*crank_g_r0_x + crank_g_r0_y*crank_s_1) +
-            crank_J_1_zz*inv_crank_platform_joint_offset_x*(axis_y_crank_axes1_in_base_x*crank_S_ddot_x
-            + axis_y_crank_axes1_in_base_y*crank_S_ddot_y) - crank_h_1_x*(crank_c_1*crank_g_r0_y -
-            crank_g_r0_x*crank_s_1)
+        crank_mu_1_in_axes1_z = (
+        crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t + crank_mu_1_t_2*crank_s_1) +
+            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
+            axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
+            - crank_mu_1_t*crank_s_1)
         )
         # (crank-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        crank_G_t = crank_mu_1_z*inv_crank_platform_joint_offset_x
+        crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y
         # (crank-c) leg force on the platform without actuation and without the mass at the connection point
-        crank_c_t = axis_y_crank_axes1_in_base_x*crank_G_t
-        crank_c_t_2 = axis_y_crank_axes1_in_base_y*crank_G_t
+        crank_c_t = axis_y_crank_axes1_x*crank_G_in_axes1_y
+        crank_c_t_2 = axis_x_crank_axes1_x*crank_G_in_axes1_y
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
+        # (crank-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_crank[0][leg]] = -crank_c_t
         out_leg_force[_leg_force_crank[1][leg]] = -crank_c_t_2
-        out_drive[_drive_crank[0][leg]] = crank_w_1_t
-        out_drive[_drive_crank[1][leg]] = crank_w_1_t_2
-        out_constraint_direction[_constraint_direction_crank[0][leg]] = -crank_n_c_t_2
-        out_constraint_direction[_constraint_direction_crank[1][leg]] = crank_n_c_t_3
+        # (crank-w_1) reciprocal vector 1
+        out_drive[_drive_crank[0][leg]] = crank_w_1_x
+        out_drive[_drive_crank[1][leg]] = crank_w_1_y
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        out_constraint_direction[_constraint_direction_crank[0][leg]] = crank_n_c_x
+        out_constraint_direction[_constraint_direction_crank[1][leg]] = crank_n_c_y
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_mu_1_t, rrr_mu_1_t_2,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3281,124 +3281,122 @@ def _run_legs(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        rrr_S_ddot_tip_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
-        )
-        rrr_S_ddot_tip_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
-        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_x = (
-        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
-        )
-        rrr_acc_2_y = (
-        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1) acceleration tensor of link 1
+        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        rrr_alpha_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_in_axes1_xy
+        )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_in_axes2_x = (
+        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
+        )
+        rrr_acc_2_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        rrr_mu_2_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
+        )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
-            rrr_N_1_z)
+        rrr_c_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
-        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
-        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
-        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
-        rrr_c_true_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
+        rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
+        rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass
+        rrr_c_true_x = (
+        axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y
         )
-        rrr_c_true_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
+        rrr_c_true_y = (
+        axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
-        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
+        # (rrr-w_1) reciprocal vector 1
+        out_drive[_drive_rrr[0][leg]] = rrr_w_1_x
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_y
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -3408,7 +3406,7 @@ def _run_potential(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3421,16 +3419,16 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
-        R_yx*h_star_x + m_star*t_y)
+    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
+        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_h_1_x, crank_h_1_y, crank_n_c_t,
+            crank_base_point_x, crank_base_point_y, crank_h_1_in_spec1_x, crank_h_1_in_spec1_y,
             crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_potential_t, crank_potential_t_2, crank_root_1_t,
+            crank_potential_t, crank_potential_t_2, crank_root_1_t, crank_size_t,
         ) = k
         # (crank-S) from the base point to the connection point
         crank_S_x = (
@@ -3443,48 +3441,48 @@ def _run_potential(m, X):
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
         # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
         # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
-        # (crank-h_1) first moment of link 1 about the origin of link 1
-        crank_h_1_r0_x = crank_c_1*crank_h_1_x - crank_h_1_y*crank_s_1
-        crank_h_1_r0_y = crank_c_1*crank_h_1_y + crank_h_1_x*crank_s_1
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
         # (potential) potential energy
-        crank_potential_t_3 = (
-        gravity_x*(crank_potential_t + crank_base_frame_xx*crank_h_1_r0_x +
-            crank_base_frame_xy*crank_h_1_r0_y) + gravity_y*(crank_potential_t_2 +
-            crank_base_frame_yx*crank_h_1_r0_x + crank_base_frame_yy*crank_h_1_r0_y)
+        crank_potential_t_3 = crank_c_1*crank_h_1_in_spec1_x - crank_h_1_in_spec1_y*crank_s_1
+        crank_potential_t_4 = crank_c_1*crank_h_1_in_spec1_y + crank_h_1_in_spec1_x*crank_s_1
+        crank_potential_t_5 = (
+        gravity_x*(crank_potential_t + crank_base_frame_xx*crank_potential_t_3 +
+            crank_base_frame_xy*crank_potential_t_4) + gravity_y*(crank_potential_t_2 +
+            crank_base_frame_yx*crank_potential_t_3 + crank_base_frame_yy*crank_potential_t_4)
         )
         ok = ok & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         sums = m.added(sums, leg, (
-        crank_potential_t_3,
+        -crank_potential_t_5,
         ))
-    total_crank, = sums
+    potential_crank, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
-            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
-            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+            rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
         rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3493,36 +3491,39 @@ def _run_potential(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
         # (potential) potential energy
-        rrr_potential_t = (
-        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
-            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
-            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
-            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
+        rrr_potential_t_3 = (
+        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
+            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
         sums = m.added(sums, leg, (
-        rrr_potential_t,
+        rrr_potential_t_3,
         ))
-    total_rrr, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_crank - total_rrr
+    potential = potential_crank - potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3534,7 +3535,7 @@ def _run_condition(m, X):
     cos = m.cos
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, legs_size = shared
+    b_c_in_platform_x, b_c_in_platform_y, legs_size = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3551,91 +3552,93 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
         crank_base_frame_xx, crank_base_frame_xy, crank_base_frame_yx, crank_base_frame_yy,
-            crank_base_point_x, crank_base_point_y, crank_n_c_t, crank_n_c_x,
+            crank_base_point_x, crank_base_point_y, crank_n_c_in_axes1_x,
             crank_platform_joint_offset_x, crank_platform_point_x, crank_platform_point_y,
-            crank_root_1_t, inv_crank_platform_joint_offset_x, inv_crank_root_1_t_2,
+            crank_root_1_t, crank_size_t, crank_w_1_in_axes1_y, inv_crank_root_1_t,
         ) = k
         # (crank-S) from the base point to the connection point
-        crank_q_in_base_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
-        crank_q_in_base_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
-        crank_S_x = crank_q_in_base_x + t_x - crank_base_point_x
-        crank_S_y = crank_q_in_base_y + t_y - crank_base_point_y
+        crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y
+        crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x
+        crank_S_x = crank_q_x + t_x - crank_base_point_x
+        crank_S_y = crank_q_y + t_y - crank_base_point_y
         # (crank-rho2_1) squared amplitude
         crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy
         crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx + crank_S_y*crank_base_frame_yx
         crank_rho2_1 = (
-        crank_n_c_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
+        crank_size_t*(crank_rho2_1_t*crank_rho2_1_t + crank_rho2_1_t_2*crank_rho2_1_t_2)
         )
-        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crank_root_1 = 1.0/(sqrt(crank_rho2_1))
-        crank_c_1 = crank_platform_joint_offset_x*crank_rho2_1_t_2*inv_crank_root_1
-        # (crank-s_1) sine of the angle of joint 1 from its reference direction
-        crank_s_1 = crank_platform_joint_offset_x*crank_rho2_1_t*inv_crank_root_1
-        # (crank-w_1) reciprocal vector 1
-        axis_y_crank_axes1_in_base_x = (
-        crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
-        )
-        axis_y_crank_axes1_in_base_y = (
-        crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
-        )
-        crank_w_1_t = axis_y_crank_axes1_in_base_x*inv_crank_platform_joint_offset_x
-        crank_w_1_t_2 = axis_y_crank_axes1_in_base_y*inv_crank_platform_joint_offset_x
-        # (crank-H_a_1) moment of the column's unit force about the platform origin
-        crank_H_a_1_z = crank_q_in_base_x*crank_w_1_t_2 - crank_q_in_base_y*crank_w_1_t
-        # (crank-n_c) unit vector that the leg's freedoms leave out
-        crank_n_c_t_2 = axis_y_crank_axes1_in_base_y*crank_n_c_x
-        crank_n_c_t_3 = axis_y_crank_axes1_in_base_x*crank_n_c_x
-        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
-        crank_Hk_a_1_z = crank_n_c_t_2*crank_q_in_base_y + crank_n_c_t_3*crank_q_in_base_x
-        # (spread) rms distance of the platform points from their centroid
-        crank_spread_t = b_c_x - crank_platform_point_x
-        crank_spread_t_2 = b_c_y - crank_platform_point_y
-        crank_spread_t_3 = crank_spread_t*crank_spread_t + crank_spread_t_2*crank_spread_t_2
         # (crank-root_1) amplitude: off the manifold the nearest angle is taken
         crank_pivot_size = abs(crank_rho2_1)
-        crank_pivot_root = sqrt(crank_pivot_size*inv_crank_root_1_t_2)
+        crank_pivot_root = sqrt(crank_pivot_size*inv_crank_root_1_t)
+        # (crank-c_1) cosine of the angle of joint 1 from its reference direction
+        crank_c_1_t = 1.0/(sqrt(crank_rho2_1))
+        crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2
+        # (crank-s_1) sine of the angle of joint 1 from its reference direction
+        crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 - crank_base_frame_xx*crank_s_1
+        axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 - crank_base_frame_yx*crank_s_1
+        crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x
+        crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x
+        # (crank-w_1) reciprocal vector 1
+        crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y
+        crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
+        crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
+        crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y
+        # (spread) rms distance of the platform points from their centroid
+        crank_spread_t = b_c_in_platform_x - crank_platform_point_x
+        crank_spread_t_2 = b_c_in_platform_y - crank_platform_point_y
+        crank_spread_t_3 = crank_spread_t*crank_spread_t + crank_spread_t_2*crank_spread_t_2
         clear = (
         clear & m.every(leg, (abs(crank_rho2_1) > _TOLERANCE * _TOLERANCE * crank_root_1_t))
         )
         sums = m.added(sums, leg, (
         crank_spread_t_3,
         ))
-        out_H[_H_crank[0][leg]] = crank_w_1_t
-        out_H[_H_crank[1][leg]] = crank_w_1_t_2
+        # (crank-w_1) reciprocal vector 1
+        out_H[_H_crank[0][leg]] = crank_w_1_x
+        out_H[_H_crank[1][leg]] = crank_w_1_y
+        # (crank-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crank[2][leg]] = crank_H_a_1_z
-        out_Hk[_Hk_crank[0][leg]] = -crank_n_c_t_2
-        out_Hk[_Hk_crank[1][leg]] = crank_n_c_t_3
+        # (crank-n_c) unit vector that the leg's freedoms leave out
+        out_Hk[_Hk_crank[0][leg]] = crank_n_c_x
+        out_Hk[_Hk_crank[1][leg]] = crank_n_c_y
+        # (crank-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_crank[2][leg]] = crank_Hk_a_1_z
+        # (crank-root_1) amplitude: off the manifold the nearest angle is taken
         out_pivots[_pivots_crank[0][leg]] = crank_pivot_root
-    total_crank, = sums
+    spread_crank, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
             rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
             rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
             rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3644,64 +3647,66 @@ def _run_condition(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        rrr_w_1_t = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        rrr_w_1_t_2 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = (
+        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
+        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = (
+        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
+        )
+        rrr_w_1_y = (
+        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
+        )
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_pivot_size = abs(rrr_rho2_1)
+        rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         # (spread) rms distance of the platform points from their centroid
-        rrr_spread_t = b_c_x - rrr_platform_point_x
-        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y
         rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
-        # (rrr-rho2_1) squared amplitude
-        rrr_pivot_size = abs(rrr_rho2_1)
-        # (rrr-w_1) reciprocal vector 1
-        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_least_pivots = (
-        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
-        )
         clear = (
         clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
-            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         rrr_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
         out_reach[_reach_rrr[0][leg]] = rrr_disc_1
-    total_rrr, = sums
+    spread_rrr, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = sqrt(0.5*total_crank + 0.5*total_rrr)
+    spread = sqrt(0.5*spread_crank + 0.5*spread_rrr)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 

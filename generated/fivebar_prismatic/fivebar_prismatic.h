@@ -92,14 +92,16 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 2 legs of type rpr */
-    fivebar_prismatic_real rpr_J_group_1_zz[2], rpr_Sigma_1_xx[2], rpr_Sigma_1_yy[2], rpr_b_r0_x[2],
-            rpr_b_r0_y[2], rpr_base_frame_xx[2], rpr_base_frame_xy[2], rpr_base_frame_yx[2],
-            rpr_base_frame_yy[2], rpr_base_point_x[2], rpr_base_point_y[2], rpr_branch_1[2],
-            rpr_g_r0_x[2], rpr_g_r0_y[2], rpr_h_1_x[2], rpr_h_1_y[2], rpr_h_2_x[2], rpr_h_2_y[2],
-            rpr_h_group_1_x[2], rpr_h_group_1_y[2], rpr_link1_mass[2], rpr_link2_mass[2],
-            rpr_platform_point_x[2], rpr_platform_point_y[2];
-    fivebar_prismatic_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
-            legs_size, m_star, spread_t;
+    fivebar_prismatic_real rpr_J_group_1_in_axes1_zz[2], rpr_Sigma_1_in_axes1_xx[2],
+            rpr_Sigma_1_in_axes1_yy[2], rpr_acc_2_t[2], rpr_acc_2_t_2[2], rpr_base_frame_xx[2],
+            rpr_base_frame_xy[2], rpr_base_frame_yx[2], rpr_base_frame_yy[2], rpr_base_point_x[2],
+            rpr_base_point_y[2], rpr_branch_1[2], rpr_h_1_in_spec1_x[2], rpr_h_1_in_spec1_y[2],
+            rpr_h_2_in_spec1_x[2], rpr_h_2_in_spec1_y[2], rpr_h_group_1_in_axes1_x[2],
+            rpr_h_group_1_in_axes1_y[2], rpr_link1_mass[2], rpr_link2_mass[2],
+            rpr_platform_point_x[2], rpr_platform_point_y[2], rpr_potential_t[2],
+            rpr_potential_t_2[2];
+    fivebar_prismatic_real Z_p_x, Z_p_y, b_c_in_platform_x, b_c_in_platform_y, gravity_x, gravity_y,
+            h_star_x, h_star_y, legs_size, m_star, spread_t;
 } fivebar_prismatic_model;
 
 extern const fivebar_prismatic_params fivebar_prismatic_default_params;

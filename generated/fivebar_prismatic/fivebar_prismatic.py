@@ -303,7 +303,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -456,68 +456,71 @@ def _prepare(p):
     spread_t = 0.5*sqrt(2.0)
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.0606601717798212*spread_t
-    # (rpr-h_2) first moment of link 2 about the connection point
-    rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
-    rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (rpr-J_1) inertia tensor of link 1 about the origin of link 1
-    rpr_J_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x
-    rpr_J_1_t_2 = rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
-    rpr_J_1_t_3 = rpr_J_1_t + rpr_J_1_t_2
-    # (rpr-J_2) inertia tensor of link 2 about the connection point
-    rpr_J_2_t = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x
-    rpr_J_2_t_2 = rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y
-    rpr_J_2_t_3 = rpr_J_2_t + rpr_J_2_t_2
-    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
-    rpr_J_group_1_xx = rpr_J_1_t_2*rpr_link1_mass + rpr_J_2_t_2*rpr_link2_mass
-    rpr_J_group_1_yy = rpr_J_1_t*rpr_link1_mass + rpr_J_2_t*rpr_link2_mass
-    rpr_J_group_1_zz = (
-    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_1_t_3*rpr_link1_mass +
-        rpr_J_2_t_3*rpr_link2_mass
-    )
     # (rpr-h_1) first moment of link 1 about the origin of link 1
-    rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
-    rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
-    # (rpr-trace_J_1) half the trace of that inertia tensor
-    rpr_trace_J_1 = 0.5*rpr_J_group_1_xx + 0.5*rpr_J_group_1_yy + 0.5*rpr_J_group_1_zz
-    # (rpr-Sigma_1) second moment of mass of the links that turn with link 1
-    rpr_Sigma_1_xx = rpr_trace_J_1 - rpr_J_group_1_xx
-    rpr_Sigma_1_yy = rpr_trace_J_1 - rpr_J_group_1_yy
-    # (rpr-h_group_1) first moments of the links that turn with link 1
-    rpr_h_group_1_x = rpr_h_1_x + rpr_h_2_x
-    rpr_h_group_1_y = rpr_h_1_y + rpr_h_2_y
+    rpr_h_1_in_spec1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
+    rpr_h_1_in_spec1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
+    # (rpr-h_2) first moment of link 2 about the connection point
+    rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
+    rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
     # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x
+    rpr_J_group_1_t_2 = rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
+    rpr_J_group_1_t_3 = rpr_J_group_1_t + rpr_J_group_1_t_2
+    rpr_J_group_1_t_4 = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x
+    rpr_J_group_1_t_5 = rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y
+    rpr_J_group_1_t_6 = rpr_J_group_1_t_4 + rpr_J_group_1_t_5
+    rpr_J_group_1_in_axes1_xx = (
+    rpr_J_group_1_t_2*rpr_link1_mass + rpr_J_group_1_t_5*rpr_link2_mass
+    )
+    rpr_J_group_1_in_axes1_yy = rpr_J_group_1_t*rpr_link1_mass + rpr_J_group_1_t_4*rpr_link2_mass
+    rpr_J_group_1_in_axes1_zz = (
+    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_group_1_t_3*rpr_link1_mass +
+        rpr_J_group_1_t_6*rpr_link2_mass
+    )
+    # (rpr-trace_J_1) half the trace of that inertia tensor
+    rpr_trace_J_1 = (
+    0.5*rpr_J_group_1_in_axes1_xx + 0.5*rpr_J_group_1_in_axes1_yy + 0.5*rpr_J_group_1_in_axes1_zz
+    )
+    # (rpr-Sigma_1) second moment of mass of the links that turn with link 1
+    rpr_Sigma_1_in_axes1_xx = rpr_trace_J_1 - rpr_J_group_1_in_axes1_xx
+    rpr_Sigma_1_in_axes1_yy = rpr_trace_J_1 - rpr_J_group_1_in_axes1_yy
+    # (rpr-h_group_1) first moments of the links that turn with link 1
+    rpr_h_group_1_in_axes1_x = rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x
+    rpr_h_group_1_in_axes1_y = rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
     # (h_star) first moment about the platform origin
     rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x
     rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y
     # (potential) potential energy
-    rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
-    total_rpr_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
-    total_rpr_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
-    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
-    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
+    rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    m_star_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    h_star_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
+    h_star_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
+    b_c_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
+    b_c_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rpr
-    # (Z_p) centripetal force and weight of the platform
-    Z_p_x = gravity_x*m_star
-    Z_p_y = gravity_y*m_star
+    m_star = m_star_rpr + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_rpr_x
-    h_star_y = h_star_t_2 + total_rpr_y
+    h_star_x = h_star_rpr_in_platform_x + h_star_t
+    h_star_y = h_star_rpr_in_platform_y + h_star_t_2
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -gravity_x*m_star
+    Z_p_y = -gravity_y*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.5*total_rpr_x_2
-    b_c_y = 0.5*total_rpr_y_2
+    b_c_in_platform_x = 0.5*b_c_rpr_in_platform_x
+    b_c_in_platform_y = 0.5*b_c_rpr_in_platform_y
     return {
         "dynamics": (
         (Z_p_x, Z_p_y, gravity_x, gravity_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_Sigma_1_xx, rpr_Sigma_1_yy, rpr_base_frame_xx, rpr_base_frame_xy,
-                    rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-                    rpr_branch_1, rpr_h_2_x, rpr_h_2_y, rpr_h_group_1_x, rpr_h_group_1_y,
+        (rpr_J_group_1_in_axes1_zz, rpr_Sigma_1_in_axes1_xx, rpr_Sigma_1_in_axes1_yy,
+                    rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+                    rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_h_group_1_in_axes1_x, rpr_h_group_1_in_axes1_y,
                     rpr_platform_point_x, rpr_platform_point_y,),
                 ),
             ),
@@ -526,9 +529,10 @@ def _prepare(p):
         (m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,),
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -536,9 +540,10 @@ def _prepare(p):
         (Z_p_x, Z_p_y, gravity_x, gravity_y,),
             (
                 (_rpr,
-        (rpr_Sigma_1_xx, rpr_Sigma_1_yy, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_2_x, rpr_h_2_y, rpr_h_group_1_x, rpr_h_group_1_y, rpr_platform_point_x,
+        (rpr_Sigma_1_in_axes1_xx, rpr_Sigma_1_in_axes1_yy, rpr_base_frame_xx, rpr_base_frame_xy,
+                    rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
+                    rpr_branch_1, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+                    rpr_h_group_1_in_axes1_x, rpr_h_group_1_in_axes1_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
             ),
@@ -557,10 +562,11 @@ def _prepare(p):
         (gravity_x, gravity_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -598,10 +604,11 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
             ),
         ),
@@ -609,15 +616,16 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rpr,
-        (rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,),
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_link1_mass, rpr_platform_point_x,
+                    rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, legs_size, spread_t,),
             (
                 (_rpr,
         (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1044,80 +1052,93 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 5
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_Sigma_1_xx, rpr_Sigma_1_yy, rpr_base_frame_xx, rpr_base_frame_xy,
-            rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-            rpr_branch_1, rpr_h_2_x, rpr_h_2_y, rpr_h_group_1_x, rpr_h_group_1_y,
+        rpr_J_group_1_in_axes1_zz, rpr_Sigma_1_in_axes1_xx, rpr_Sigma_1_in_axes1_yy,
+            rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+            rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_in_spec1_x,
+            rpr_h_2_in_spec1_y, rpr_h_group_1_in_axes1_x, rpr_h_group_1_in_axes1_y,
             rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
-        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_yy = (
-        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
-        )
-        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rpr_Q_t = 0.5*rpr_d_c_yy
-        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
-        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
-        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
-        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
-        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_t = rpr_qd_1*rpr_qd_1
-        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_qdd_1_o = 2.0*inv_rpr_root_1*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-B_1_o) remainder of the acceleration tensor of link 1
+        rpr_B_1_o_in_axes1_xy = 2.0*inv_rpr_root_1*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_x = rpr_h_2_y*rpr_qdd_1_o - rpr_W_1_t*rpr_h_2_x
+        rpr_phi_2_o_in_axes1_x = (
+        rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y - rpr_W_1_t*rpr_h_2_in_spec1_x
+        )
         # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_o_z = (
-        rpr_h_group_1_y*(gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y) -
-            rpr_Sigma_1_xx*rpr_qdd_1_o - rpr_Sigma_1_yy*rpr_qdd_1_o -
-            rpr_h_group_1_x*(gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y)
+        rpr_mu_1_o_in_axes1_z = (
+        rpr_h_group_1_in_axes1_y*(axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y) -
+            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx -
+            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
+            rpr_h_group_1_in_axes1_x*(axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x)
+        )
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_in_axes1_xy = inv_rpr_root_1*rpr_h_2_in_spec1_y
+        rpr_d_c_in_axes1_yy = (
+        -inv_rpr_root_1*rpr_h_2_in_spec1_x - inv_rpr_root_1*(rpr_h_2_in_spec1_x +
+            inv_rpr_root_1*rpr_J_group_1_in_axes1_zz)
         )
         # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y + rpr_h_2_x*rpr_qdd_1_o - inv_rpr_root_1*rpr_mu_1_o_z
+        rpr_c_o_in_axes1_y = (
+        rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x + rpr_W_1_t*rpr_h_2_in_spec1_y -
+            inv_rpr_root_1*rpr_mu_1_o_in_axes1_z
+        )
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
+        rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t - axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy
+        rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t + axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy
+        rpr_Q_xx = -2.0*axis_x_rpr_axes1_y*rpr_Q_t_2
+        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
+        rpr_Q_yy = -2.0*axis_x_rpr_axes1_x*rpr_Q_t_3
         # (rpr-U) velocity and gravity terms of the leg force
-        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
-        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        rpr_U_x = (
+        axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x + axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y
+        )
+        rpr_U_y = (
+        axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x - axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y
+        )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_U_in_base_x, rpr_U_in_base_y,
+        rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_U_x, rpr_U_y,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
-    total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_x, total_rpr_y = sums
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
+    M_tt_rpr_xx, M_tt_xy, M_tt_rpr_yy, Z_t_rpr_x, Z_t_rpr_y = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rpr_xx
-    M_tt_yy = m_star - total_rpr_yy
+    M_tt_xx = M_tt_rpr_xx + m_star
+    M_tt_yy = M_tt_rpr_yy + m_star
     # (Z_t) translational part of Z
-    Z_t_x = total_rpr_x - Z_p_x
-    Z_t_y = total_rpr_y - Z_p_y
+    Z_t_x = Z_p_x + Z_t_rpr_x
+    Z_t_y = Z_p_y + Z_t_rpr_y
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = total_rpr_xy
-    out_M[2] = total_rpr_xy
+    out_M[1] = M_tt_xy
+    out_M[2] = M_tt_xy
     out_M[3] = M_tt_yy
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     return ok, (out_M, out_Z, out_H,)
@@ -1138,52 +1159,54 @@ def _run_M(m, X):
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_x,
-            rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_yy = (
-        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
+        rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y
+        rpr_d_c_in_axes1_yy = (
+        -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y - rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
+            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y)
         )
         # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rpr_Q_t = 0.5*rpr_d_c_yy
-        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
-        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
-        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
-        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
-        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
+        rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x
+        rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y
+        rpr_Q_xx = -2.0*rpr_Q_t_2*rpr_w_2_y
+        rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y
+        rpr_Q_yy = -2.0*rpr_Q_t_3*rpr_w_2_x
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6,
+        rpr_Q_xx, rpr_Q_xy, rpr_Q_yy,
         ))
-    total_rpr_xx, total_rpr_xy, total_rpr_yy = sums
+    M_tt_rpr_xx, M_tt_xy, M_tt_rpr_yy = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rpr_xx
-    M_tt_yy = m_star - total_rpr_yy
+    M_tt_xx = M_tt_rpr_xx + m_star
+    M_tt_yy = M_tt_rpr_yy + m_star
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = total_rpr_xy
-    out_M[2] = total_rpr_xy
+    out_M[1] = M_tt_xy
+    out_M[2] = M_tt_xy
     out_M[3] = M_tt_yy
     return ok, (out_M,)
 
@@ -1208,58 +1231,68 @@ def _run_Z(m, X, V):
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
-        rpr_Sigma_1_xx, rpr_Sigma_1_yy, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_x,
-            rpr_h_2_y, rpr_h_group_1_x, rpr_h_group_1_y, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_Sigma_1_in_axes1_xx, rpr_Sigma_1_in_axes1_yy, rpr_base_frame_xx, rpr_base_frame_xy,
+            rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
+            rpr_branch_1, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_h_group_1_in_axes1_x,
+            rpr_h_group_1_in_axes1_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_t = rpr_qd_1*rpr_qd_1
-        # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_qdd_1_o = 2.0*inv_rpr_root_1*rpr_S_dot_tip_x*rpr_qd_1
+        # (rpr-B_1_o) remainder of the acceleration tensor of link 1
+        rpr_B_1_o_in_axes1_xy = 2.0*inv_rpr_root_1*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_x = rpr_h_2_y*rpr_qdd_1_o - rpr_W_1_t*rpr_h_2_x
+        rpr_phi_2_o_in_axes1_x = (
+        rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y - rpr_W_1_t*rpr_h_2_in_spec1_x
+        )
         # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_o_z = (
-        rpr_h_group_1_y*(gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y) -
-            rpr_Sigma_1_xx*rpr_qdd_1_o - rpr_Sigma_1_yy*rpr_qdd_1_o -
-            rpr_h_group_1_x*(gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y)
+        rpr_mu_1_o_in_axes1_z = (
+        rpr_h_group_1_in_axes1_y*(axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y) -
+            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx -
+            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
+            rpr_h_group_1_in_axes1_x*(axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x)
         )
         # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y + rpr_h_2_x*rpr_qdd_1_o - inv_rpr_root_1*rpr_mu_1_o_z
+        rpr_c_o_in_axes1_y = (
+        rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x + rpr_W_1_t*rpr_h_2_in_spec1_y -
+            inv_rpr_root_1*rpr_mu_1_o_in_axes1_z
+        )
         # (rpr-U) velocity and gravity terms of the leg force
-        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
-        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        rpr_U_x = (
+        axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x + axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y
+        )
+        rpr_U_y = (
+        axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x - axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y
+        )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rpr_U_in_base_x, rpr_U_in_base_y,
+        rpr_U_x, rpr_U_y,
         ))
-    total_rpr_x, total_rpr_y = sums
+    Z_t_rpr_x, Z_t_rpr_y = sums
     # (Z_t) translational part of Z
-    Z_t_x = total_rpr_x - Z_p_x
-    Z_t_y = total_rpr_y - Z_p_y
+    Z_t_x = Z_p_x + Z_t_rpr_x
+    Z_t_y = Z_p_y + Z_t_rpr_y
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     return ok, (out_Z,)
@@ -1285,24 +1318,26 @@ def _run_H(m, X):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = rpr_w_2_x
+        out_H[_H_rpr[1][leg]] = rpr_w_2_y
     return ok, (out_H,)
 
 
@@ -1338,71 +1373,78 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
-        # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
         # (rpr-S_ddot) acceleration of the connection point
-        rpr_S_ddot_tip_y = rpr_axis_x_x*t_ddot_y - rpr_axis_x_y*t_ddot_x
+        rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*t_ddot_y - axis_x_rpr_axes1_y*t_ddot_x
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
-        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
-        rpr_acc_2_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y - rpr_g_r1_x
-        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
+        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_acc_2_in_axes1_x = (
+        axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x
+        )
+        rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1
+        rpr_phi_2_in_axes1_x = -rpr_W_1_t*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_z = (
-        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
-            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
+        rpr_mu_1_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
-        rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y
-        rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x
+        rpr_c_in_axes1_y = (
+        rpr_W_1_t*rpr_h_2_in_spec1_y - inv_rpr_root_1*rpr_mu_1_in_axes1_z -
+            rpr_h_2_in_spec1_x*rpr_qdd_1
+        )
+        rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_in_axes1_y
+        rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y - axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rpr_c_in_base_x, rpr_c_in_base_y,
+        rpr_c_x, rpr_c_y,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
-    total_rpr_x, total_rpr_y = sums
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
+    R_t_t, R_t_t_2 = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rpr_x
-    R_t_y = f_p_y - total_rpr_y
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     return ok, (out_required, out_H,)
@@ -1429,23 +1471,24 @@ def _run_inverse_kinematics(m, X):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
         # (rpr-q_1) displacement of joint 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_q_1 = atan2(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1)
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
+        # (rpr-q_1) displacement of joint 1
         out_q[_q_rpr[0][leg]] = rpr_q_1
+        # (rpr-q_2) displacement of joint 2
         out_q[_q_rpr[1][leg]] = rpr_root_1
     return ok, (out_q,)
 
@@ -1475,28 +1518,29 @@ def _run_joint_rates(m, X, V):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
+        # (rpr-qd_1) rate of joint 1
         out_qd[_qd_rpr[0][leg]] = rpr_qd_1
-        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_tip_x
+        # (rpr-qd_2) rate of joint 2
+        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_in_axes1_x
     return ok, (out_qd,)
 
 
@@ -1530,33 +1574,39 @@ def _run_joint_accelerations(m, X, V, A):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
+        rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y + rpr_qd_1*rpr_qd_1*rpr_root_1
-        rpr_rel_y = rpr_axis_x_x*t_ddot_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1 - rpr_axis_x_y*t_ddot_x
+        rpr_rel_in_axes1_x = (
+        axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y + rpr_qd_1*rpr_qd_1*rpr_root_1
+        )
+        rpr_rel_in_axes1_y = (
+        axis_x_rpr_axes1_x*t_ddot_y - axis_x_rpr_axes1_y*t_ddot_x -
+            2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
+        )
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
+        # (rpr-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rpr[0][leg]] = rpr_qdd_1
-        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_x
+        # (rpr-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_in_axes1_x
     return ok, (out_qdd,)
 
 
@@ -1584,67 +1634,82 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link2_mass,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_tip_x = rpr_axis_x_x*t_dot_x + rpr_axis_x_y*t_dot_y
-        # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_axis_x_x*t_dot_y - rpr_axis_x_y*t_dot_x)
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y - axis_x_rpr_axes1_y*t_dot_x)
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_t = rpr_qd_1*rpr_qd_1
         # (rpr-S_ddot) acceleration of the connection point
-        rpr_S_ddot_tip_y = rpr_axis_x_x*t_ddot_y - rpr_axis_x_y*t_ddot_x
+        rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*t_ddot_y - axis_x_rpr_axes1_y*t_ddot_x
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
-        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
-        rpr_acc_2_x = rpr_axis_x_x*t_ddot_x + rpr_axis_x_y*t_ddot_y - rpr_g_r1_x
-        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
+        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_acc_2_in_axes1_x = (
+        axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x
+        )
+        rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_z = (
-        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
-            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
+        rpr_mu_1_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        rpr_c_in_axes1_y = (
+        rpr_W_1_t*rpr_h_2_in_spec1_y - inv_rpr_root_1*rpr_mu_1_in_axes1_z -
+            rpr_h_2_in_spec1_x*rpr_qdd_1
+        )
         # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
-        rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 - rpr_acc_2_x*rpr_link2_mass
-        rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass
-        rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y
-        rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x
+        rpr_c_true_in_axes1_x = (
+        rpr_W_1_t*rpr_h_2_in_spec1_x + rpr_h_2_in_spec1_y*rpr_qdd_1 -
+            rpr_acc_2_in_axes1_x*rpr_link2_mass
+        )
+        rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass
+        rpr_c_true_x = (
+        axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y
+        )
+        rpr_c_true_y = (
+        axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y + axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x
+        )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
-        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_in_base_x
-        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_in_base_y
-        out_drive[_drive_rpr[0][leg]] = rpr_axis_x_x
-        out_drive[_drive_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_x
+        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_y
+        # (rpr-w_2) reciprocal vector 2
+        out_drive[_drive_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_drive[_drive_rpr[1][leg]] = axis_x_rpr_axes1_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -1665,45 +1730,46 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link1_mass,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
+            rpr_potential_t_2,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
         # (potential) potential energy
-        rpr_potential_t = (
-        (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x + rpr_h_2_x +
-            rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) + (rpr_c_1*rpr_g_r0_y -
-            rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y + rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 -
-            rpr_b_r0_x*rpr_s_1))
+        rpr_potential_t_3 = (
+        (rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
+            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
+            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rpr_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rpr_potential_t,
+        rpr_potential_t_3,
         ))
-    total_rpr, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_rpr
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -1713,7 +1779,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     # X: named entries
@@ -1726,6 +1792,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -1737,30 +1804,29 @@ def _run_condition(m, X):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (spread) rms distance of the platform points from their centroid
-        rpr_spread_t = b_c_x - rpr_platform_point_x
-        rpr_spread_t_2 = b_c_y - rpr_platform_point_y
-        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
-        # (rpr-rho2_1) squared amplitude
-        rpr_pivot_size = abs(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_pivot_size_2 = abs(rpr_root_1)
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rpr_pivot_size = abs(rpr_rho2_1)
+        rpr_pivot_size_2 = abs(rpr_root_1)
         rpr_least_pivots = (
         least(1.3333333333333333*sqrt(rpr_pivot_size), 1.3333333333333333*rpr_pivot_size_2)
         )
+        # (spread) rms distance of the platform points from their centroid
+        rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x
+        rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y
+        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
         clear = (
         clear & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(rpr_root_1) > _TOLERANCE * 0.75))
@@ -1768,12 +1834,15 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         rpr_spread_t_3,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = rpr_w_2_x
+        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rpr[0][leg]] = rpr_least_pivots
-    total_rpr, = sums
+    spread_rpr, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_rpr)
+    spread = sqrt(spread_rpr)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

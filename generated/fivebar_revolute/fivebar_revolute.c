@@ -488,12 +488,12 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rrr = 0;
-    real total_rrr_x = 0;
-    real total_rrr_y = 0;
-    real total_rrr_x_2 = 0;
-    real total_rrr_y_2 = 0;
-    real total_rrr_2 = 0;
+    real m_star_rrr = 0;
+    real h_star_rrr_in_platform_x = 0;
+    real h_star_rrr_in_platform_y = 0;
+    real b_c_rrr_in_platform_x = 0;
+    real b_c_rrr_in_platform_y = 0;
+    real legs_size_rrr = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -529,81 +529,78 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {1, -1};
         const real rrr_branch_1 = signs_rrr_branch_1[own];
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
-        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real rrr_size_t = R(5.257946636889999e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
-        const real rrr_size = root(rrr_size_t);
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
-        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
-        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
-        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
-        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
-        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
-        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
-            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
-        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
-        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_size_t_3 = R(5.257946636889999e-07) + rrr_size_t + rrr_size_t_2;
+        const real rrr_size = root(rrr_size_t_3);
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
+            rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
+        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
+        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = 1/rrr_size_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
+        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
+        const real inv_rrr_size = 1/rrr_size;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
-            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
-        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
         /* (h_star) first moment about the platform origin */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
         /* (potential) potential energy */
-        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-rho2_1) squared amplitude */
-        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_size = 1/rrr_size;
-        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
-        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
-        model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
         model->inv_rrr_size[leg] = inv_rrr_size;
-        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
-        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
-        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
+        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
+        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
+        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
+        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
+        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
         model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
-        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
-        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
@@ -611,48 +608,51 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
         model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
         model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
-        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
-        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
-        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
-        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
-        model->rrr_h_1_x[leg] = rrr_h_1_x;
-        model->rrr_h_1_y[leg] = rrr_h_1_y;
-        model->rrr_h_2_x[leg] = rrr_h_2_x;
-        model->rrr_h_2_y[leg] = rrr_h_2_y;
+        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
+        model->rrr_d_phi_2_in_axes2_xy[leg] = rrr_d_phi_2_in_axes2_xy;
+        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
+        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
+        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
+        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
+        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
+        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
+        model->rrr_potential_t[leg] = rrr_potential_t;
+        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
         model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
         model->rrr_size[leg] = rrr_size;
-        total_rrr += rrr_link2_mass;
-        total_rrr_x += rrr_h_star_t;
-        total_rrr_y += rrr_h_star_t_2;
-        total_rrr_x_2 += rrr_platform_point_x;
-        total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += rrr_size_t;
+        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        m_star_rrr += rrr_link2_mass;
+        h_star_rrr_in_platform_x += rrr_h_star_t;
+        h_star_rrr_in_platform_y += rrr_h_star_t_2;
+        b_c_rrr_in_platform_x += rrr_platform_point_x;
+        b_c_rrr_in_platform_y += rrr_platform_point_y;
+        legs_size_rrr += rrr_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_rrr;
-    /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = gravity_x*m_star;
-    const real Z_p_y = gravity_y*m_star;
+    const real m_star = m_star_rrr + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_rrr_x;
-    const real h_star_y = h_star_t_2 + total_rrr_y;
+    const real h_star_x = h_star_rrr_in_platform_x + h_star_t;
+    const real h_star_y = h_star_rrr_in_platform_y + h_star_t_2;
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = -gravity_x*m_star;
+    const real Z_p_y = -gravity_y*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.5)*total_rrr_x_2;
-    const real b_c_y = R(0.5)*total_rrr_y_2;
+    const real b_c_in_platform_x = R(0.5)*b_c_rrr_in_platform_x;
+    const real b_c_in_platform_y = R(0.5)*b_c_rrr_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_rrr_2);
+    const real legs_size = root(legs_size_rrr)*spread_t;
     model->Z_p_x = Z_p_x;
     model->Z_p_y = Z_p_y;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->legs_size = legs_size;
@@ -1085,21 +1085,21 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -1109,142 +1109,145 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
         /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
-            rrr_d_Gamma_2_t_2);
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
-        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
-            rrr_d_Gamma_2_t_2);
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
-            rrr_d_Gamma_2_y*rrr_w_2_t;
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
-            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
-        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
-        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
-        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_w_2_in_axes2_x =
+            inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
         const real t_dot_x = s[2*w + j];
         const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
+            axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x;
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+            rrr_W_2_t*rrr_platform_joint_offset_x;
+        /* (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_z = rrr_qdd_1_o +
-            inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_r0_x);
+        const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
+            rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_in_axes2_x);
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z +
-            rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
-            axis_y_rrr_axes2_in_base_x*gravity_y) -
-            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
-            axis_y_rrr_axes2_in_base_y*gravity_y);
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
+            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x);
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
+        const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_o_z = rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x +
-            rrr_g_r0_y*rrr_s_1) - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o +
+            rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+        const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+        const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
+        const real rrr_d_c_in_axes2_xy = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
+            rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
-        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x +
+            rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x - inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy
+            - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
-        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        /* (Z_t) translational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
         /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
-        o[4*count + k] = rrr_w_1_t + rrr_w_1_t_2;
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        o[4*count + k] = rrr_w_1_x + rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -1266,26 +1269,28 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rrr_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rrr_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rrr_xx;
-        const real total_rrr_yy = sums[2*w + k];
-        const real M_tt_yy = m_star - total_rrr_yy;
+        const real M_tt_xx = M_tt_rrr_xx + m_star;
+        const real M_tt_rrr_yy = sums[2*w + k];
+        const real M_tt_yy = M_tt_rrr_yy + m_star;
         /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
-        const real total_rrr_x = sums[3*w + k];
-        const real Z_t_x = total_rrr_x - Z_p_x;
+        const real Z_t_rrr_x = sums[3*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rrr_x;
         const real Z_p_y = m->Z_p_y;
-        const real total_rrr_y = sums[4*w + k];
-        const real Z_t_y = total_rrr_y - Z_p_y;
+        const real Z_t_rrr_y = sums[4*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rrr_y;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rrr_xy = sums[1*w + k];
-        M[1*w + k] = total_rrr_xy;
-        M[2*w + k] = total_rrr_xy;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[2*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_yy;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
-        t->total[k] += (M_tt_xx + total_rrr_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
+        t->total[k] += (M_tt_xx + M_tt_xy) + (M_tt_yy + (Z_t_x + Z_t_y));
     }
 }
 
@@ -1348,21 +1353,21 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -1372,77 +1377,77 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
         /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_w_2_in_axes2_x =
+            inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
         const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
-            rrr_d_Gamma_2_t_2);
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
-        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
-            rrr_d_Gamma_2_t_2);
+        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+        const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
-            rrr_d_Gamma_2_y*rrr_w_2_t;
+        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+        const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
+        const real rrr_d_c_in_axes2_xy = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
+            rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
-            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
-        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
-        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
+        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
+        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
+        const real rrr_Q_t_3 = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x +
+            rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x - inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy
+            - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
+        const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
+            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
+            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
+        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -1459,17 +1464,18 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rrr_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rrr_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rrr_xx;
-        const real total_rrr_yy = sums[2*w + k];
-        const real M_tt_yy = m_star - total_rrr_yy;
+        const real M_tt_xx = M_tt_rrr_xx + m_star;
+        const real M_tt_rrr_yy = sums[2*w + k];
+        const real M_tt_yy = M_tt_rrr_yy + m_star;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rrr_xy = sums[1*w + k];
-        M[1*w + k] = total_rrr_xy;
-        M[2*w + k] = total_rrr_xy;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[2*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_yy;
-        t->total[k] += M_tt_xx + (total_rrr_xy + M_tt_yy);
+        t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
     }
 }
 
@@ -1537,21 +1543,21 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -1561,101 +1567,102 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        /* (rrr-qd_2) rate of joint 2 */
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
         const real t_dot_x = s[2*w + j];
         const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        const real rrr_qd_1_t_3 = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
+            axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x;
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+            rrr_W_2_t*rrr_platform_joint_offset_x;
+        /* (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_z = rrr_qdd_1_o +
-            inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_r0_x);
+        const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
+            rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_in_axes2_x);
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z +
-            rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
-            axis_y_rrr_axes2_in_base_x*gravity_y) -
-            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
-            axis_y_rrr_axes2_in_base_y*gravity_y);
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
+            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x);
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_o_z = rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x +
-            rrr_g_r0_y*rrr_s_1) - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o +
+            rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
-        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
-        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
+        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -1673,11 +1680,12 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
-        const real total_rrr_x = sums[0*w + k];
-        const real Z_t_x = total_rrr_x - Z_p_x;
+        const real Z_t_rrr_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rrr_x;
         const real Z_p_y = m->Z_p_y;
-        const real total_rrr_y = sums[1*w + k];
-        const real Z_t_y = total_rrr_y - Z_p_y;
+        const real Z_t_rrr_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rrr_y;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         t->total[k] += Z_t_x + Z_t_y;
@@ -1741,21 +1749,21 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -1765,40 +1773,42 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
+            rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
-        o[4*count + k] = rrr_w_1_t + rrr_w_1_t_2;
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t);
+        const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t);
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        o[4*count + k] = rrr_w_1_x + rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -1892,21 +1902,21 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -1916,114 +1926,118 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
         const real t_dot_x = s[2*w + j];
         const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
+            axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real t_ddot_x = s[4*w + j];
         const real t_ddot_y = s[5*w + j];
-        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
-            axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr_axes2_in_base_y*t_ddot_y;
+        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x -
+            axis_y_rrr_axes2_x*t_ddot_y;
+        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y +
+            axis_y_rrr_axes2_x*t_ddot_x;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+            rrr_W_2_t*rrr_platform_joint_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
-        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
+            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1) acceleration tensor of link 1 */
+        const real rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
         /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
-            rrr_acc_2_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
-        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
-        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
-            axis_y_rrr_axes2_in_base_y*rrr_c_x;
-        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
-            axis_y_rrr_axes2_in_base_x*rrr_c_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
+            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
+        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
+            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_x : rrr_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_y : rrr_c_y;  /* R_t_t_2 */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2043,12 +2057,13 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[6*w + k];
-        const real total_rrr_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_rrr_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[7*w + k];
-        const real total_rrr_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_rrr_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
     }
@@ -2113,21 +2128,21 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg,
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2137,22 +2152,23 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg,
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         /* (rrr-q_1) displacement of joint 1 */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
             inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
         /* (rrr-q_2) displacement of joint 2 */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+        /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
+        /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
@@ -2231,21 +2247,21 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2255,49 +2271,51 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        /* (rrr-qd_2) rate of joint 2 */
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
         const real t_dot_x = s[2*w + j];
         const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y)/rrr_r_1_r0_y;
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_qd_2 = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
-            + axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
-            rrr_r_1_t*rrr_s_2));
-        o[0*count + k] = -rrr_qd_1;
+        const real rrr_qd_1_t_3 = (axis_x_rrr_axes2_x*t_dot_x -
+            axis_y_rrr_axes2_x*t_dot_y)/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x +
+            rrr_r_1_in_axes1_y*rrr_s_2));
+        /* (rrr-qd_1) rate of joint 1 */
+        o[0*count + k] = -rrr_qd_1_t_3;
+        /* (rrr-qd_2) rate of joint 2 */
         o[1*count + k] = rrr_qd_2;
-        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+        o[4*count + k] = rrr_qd_1_t_3 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2381,21 +2399,21 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2405,68 +2423,70 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        /* (rrr-qd_2) rate of joint 2 */
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
         const real t_dot_x = s[2*w + j];
         const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        const real rrr_qd_1_t_3 = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
+            axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
         const real t_ddot_x = s[4*w + j];
         const real t_ddot_y = s[5*w + j];
-        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - rrr_bias_x -
-            axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr_axes2_in_base_y*t_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - rrr_bias_in_axes2_x -
+            axis_y_rrr_axes2_x*t_ddot_y;
+        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
+            + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
-        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x);
-        o[0*count + k] = -rrr_qdd_1;
+        const real rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+        /* (rrr-qdd_2) acceleration of joint 2 */
+        const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = -rrr_qdd_1_t;
+        /* (rrr-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rrr_qdd_2;
-        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2550,21 +2570,21 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2574,118 +2594,122 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        /* (rrr-qd_2) rate of joint 2 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
         const real t_dot_x = s[2*w + j];
         const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x -
-            axis_y_rrr_axes2_in_base_x*t_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
+            axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real t_ddot_x = s[4*w + j];
         const real t_ddot_y = s[5*w + j];
-        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*t_ddot_x -
-            axis_y_rrr_axes2_in_base_x*t_ddot_y;
-        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr_axes2_in_base_y*t_ddot_y;
+        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x -
+            axis_y_rrr_axes2_x*t_ddot_y;
+        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y +
+            axis_y_rrr_axes2_x*t_ddot_x;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+            rrr_W_2_t*rrr_platform_joint_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
-        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
+            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1) acceleration tensor of link 1 */
+        const real rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
         /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
-            rrr_acc_2_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
-        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
-        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
-        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
-            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
-        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
-            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
-        o[0*count + k] = rrr_c_true_in_base_x;
-        o[1*count + k] = rrr_c_true_in_base_y;
-        o[2*count + k] = -rrr_w_1_t;
-        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rrr_c_true_x;
+        o[1*count + k] = rrr_c_true_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[2*count + k] = rrr_w_1_x;
+        o[3*count + k] = rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2756,21 +2780,21 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2780,38 +2804,41 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (potential) potential energy */
-        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
-        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
-            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
-            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
-            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
-            rrr_h_2_x*rrr_s_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_potential_t = m->rrr_potential_t[i];
+        const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
+        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t_3 : rrr_potential_t_3;  /* potential_t_2 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
@@ -2831,8 +2858,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[2*w + k];
-        const real total_rrr = sums[0*w + k];
-        const real potential_ = -potential_t - total_rrr;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -2863,6 +2891,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         const real t_y = X_1;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -2886,21 +2915,21 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2910,59 +2939,62 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
+            rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
-        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t);
+        const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
-        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* spread_rrr */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[2*count + k] = rrr_least_pivots;
         o[3*count + k] = rrr_disc_1;
-        o[6*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_least_pivots + rrr_disc_1);
+        o[6*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_least_pivots + rrr_disc_1);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2986,9 +3018,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_rrr = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_rrr = sums[0*w + k];
-        const real spread_ = spread_t*root(total_rrr);
+        const real spread_ = root(spread_rrr)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -96,18 +96,19 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 2 legs of type rrr */
-    fivebar_revolute_real inv_rrr_Kd_1_t_5[2], inv_rrr_Kd_1_t_7[2],
-            inv_rrr_platform_joint_offset_x[2], inv_rrr_rho2_1_t_4[2], inv_rrr_size[2], rrr_J_1_zz[2],
-            rrr_J_2_zz[2], rrr_Jc_1_zz[2], rrr_Kd_1_t_2[2], rrr_Kd_1_t_4[2], rrr_b_r0_x[2],
-            rrr_b_r0_y[2], rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2],
-            rrr_base_frame_yy[2], rrr_base_point_x[2], rrr_base_point_y[2], rrr_branch_1[2],
-            rrr_d_Gamma_2_t[2], rrr_d_Gamma_2_y[2], rrr_d_c_yy[2], rrr_d_phi_2_t[2], rrr_g_r0_x[2],
-            rrr_g_r0_y[2], rrr_h_1_x[2], rrr_h_1_y[2], rrr_h_2_x[2], rrr_h_2_y[2],
-            rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2],
-            rrr_platform_joint_offset_x[2], rrr_platform_point_x[2], rrr_platform_point_y[2],
-            rrr_rho2_1_t[2], rrr_size[2];
-    fivebar_revolute_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
-            legs_size, m_star, spread_t;
+    fivebar_revolute_real inv_rrr_rho2_1_t[2], inv_rrr_size[2], inv_rrr_size_t[2],
+            inv_rrr_size_t_2[2], rrr_J_1_in_spec1_zz[2], rrr_J_2_in_spec2_zz[2],
+            rrr_Jc_1_in_axes1_zz[2], rrr_Kd_1_t[2], rrr_Kd_1_t_2[2], rrr_base_frame_xx[2],
+            rrr_base_frame_xy[2], rrr_base_frame_yx[2], rrr_base_frame_yy[2], rrr_base_point_x[2],
+            rrr_base_point_y[2], rrr_branch_1[2], rrr_d_Gamma_2_in_axes2_y[2], rrr_d_Gamma_2_t[2],
+            rrr_d_c_in_axes2_yy[2], rrr_d_phi_2_in_axes2_xy[2], rrr_h_1_in_spec1_x[2],
+            rrr_h_1_in_spec1_y[2], rrr_h_2_in_spec2_x[2], rrr_h_2_in_spec2_y[2],
+            rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2], rrr_mu_1_t[2],
+            rrr_mu_1_t_2[2], rrr_platform_joint_offset_x[2], rrr_platform_point_x[2],
+            rrr_platform_point_y[2], rrr_potential_t[2], rrr_potential_t_2[2], rrr_rho2_1_t[2],
+            rrr_size[2], rrr_w_2_in_axes2_y[2];
+    fivebar_revolute_real Z_p_x, Z_p_y, b_c_in_platform_x, b_c_in_platform_y, gravity_x, gravity_y,
+            h_star_x, h_star_y, legs_size, m_star, spread_t;
 } fivebar_revolute_model;
 
 extern const fivebar_revolute_params fivebar_revolute_default_params;

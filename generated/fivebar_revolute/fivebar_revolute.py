@@ -318,7 +318,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -471,96 +471,98 @@ def _prepare(p):
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     # (spread) rms distance of the platform points from their centroid
     spread_t = 0.5*sqrt(2.0)
-    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
-    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
     # (rrr-size) length of the leg's lever arms, the measure of what is near singular
-    rrr_size_t = 5.257946636889999e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
-    rrr_size = sqrt(rrr_size_t)
-    # (rrr-rho2_1) squared amplitude
-    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
-    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
-    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
-    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
-    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-h_2) first moment of link 2 about the connection point
-    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
-    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-w_2) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
-    # (rrr-J_2) inertia tensor of link 2 about the connection point
-    rrr_J_2_t = (
-    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
-    )
-    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
-    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
-    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_size_t_3 = 5.257946636889999e-07 + rrr_size_t + rrr_size_t_2
+    rrr_size = sqrt(rrr_size_t_3)
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
     # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
     rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
-    # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
-    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
-    # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    rrr_d_c_yy = (
-    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
+    rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x
+    rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+        rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x
     )
-    # (rrr-h_1) first moment of link 1 about the origin of link 1
-    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = 0.5*rrr_size_t
+    rrr_Kd_1_t_2 = 0.5*rrr_size_t_2
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3
+    # (rrr-x_2) from the origin of joint 2 to the connection point
+    inv_rrr_size_t = 1.0/rrr_size_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_size_t_2 = 1.0/rrr_size_t_2
+    # (rrr-w_2) reciprocal vector 2
+    rrr_w_2_in_axes2_y = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y
+    # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
+    rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y
+    rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x
+    # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+    rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_rrr_rho2_1_t = 1.0/rrr_rho2_1_t
+    inv_rrr_size = 1.0/rrr_size
+    # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    rrr_d_c_in_axes2_yy = (
+    -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y - rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y
+    )
     # (h_star) first moment about the platform origin
     rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
     rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y
     # (potential) potential energy
-    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-rho2_1) squared amplitude
-    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
-    # (rrr-w_1) reciprocal vector 1
-    inv_rrr_size = 1.0/rrr_size
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
+    rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    m_star_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    h_star_rrr_in_platform_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    h_star_rrr_in_platform_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
+    b_c_rrr_in_platform_x = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    b_c_rrr_in_platform_y = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    legs_size_rrr = np.sum(np.broadcast_to(rrr_size_t_3, _rrr))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rrr
-    # (Z_p) centripetal force and weight of the platform
-    Z_p_x = gravity_x*m_star
-    Z_p_y = gravity_y*m_star
+    m_star = m_star_rrr + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_rrr_x
-    h_star_y = h_star_t_2 + total_rrr_y
+    h_star_x = h_star_rrr_in_platform_x + h_star_t
+    h_star_y = h_star_rrr_in_platform_y + h_star_t_2
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -gravity_x*m_star
+    Z_p_y = -gravity_y*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.5*total_rrr_x_2
-    b_c_y = 0.5*total_rrr_y_2
+    b_c_in_platform_x = 0.5*b_c_rrr_in_platform_x
+    b_c_in_platform_y = 0.5*b_c_rrr_in_platform_y
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_rrr_2)
+    legs_size = sqrt(legs_size_rrr)*spread_t
     return {
         "dynamics": (
         (Z_p_x, Z_p_y, gravity_x, gravity_y, m_star,),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
+                    rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
-                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t,
+                    rrr_d_c_in_axes2_yy, rrr_d_phi_2_in_axes2_xy, rrr_h_1_in_spec1_x,
+                    rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+                    rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+                    rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -568,12 +570,13 @@ def _prepare(p):
         (m_star,),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
-                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+                    rrr_d_phi_2_in_axes2_xy, rrr_h_2_in_spec2_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -581,12 +584,13 @@ def _prepare(p):
         (Z_p_x, Z_p_y, gravity_x, gravity_y,),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -594,7 +598,7 @@ def _prepare(p):
         (),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
@@ -606,12 +610,13 @@ def _prepare(p):
         (gravity_x, gravity_y, m_star,),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -619,7 +624,7 @@ def _prepare(p):
         (),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
@@ -631,11 +636,11 @@ def _prepare(p):
         (),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -643,11 +648,11 @@ def _prepare(p):
         (),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -655,12 +660,13 @@ def _prepare(p):
         (gravity_x, gravity_y,),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_mu_1_t,
+                    rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -668,21 +674,21 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
-                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
-                    rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+                    rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link1_mass,
+                    rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, legs_size, spread_t,),
             (
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        (inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
                     rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
                     rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
                     rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
@@ -1114,26 +1120,27 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 5
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
-            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
+            rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+            rrr_d_phi_2_in_axes2_xy, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+            rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1142,130 +1149,134 @@ def _run_dynamics(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
-        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
-        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
-        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = (
-        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
-            rrr_d_Gamma_2_x*rrr_w_2_t
-        )
-        rrr_Q_t_2 = 0.5*rrr_Q_t
-        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
-        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
-        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
-        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
-        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
         )
-        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        )
+        # (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
         # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrr_alpha_2_o_z = (
-        rrr_qdd_1_o + inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_r0_x)
+        rrr_alpha_2_o_in_axes2_z = (
+        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_in_axes2_x)
         )
         # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_o_z = (
-        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
-            axis_y_rrr_axes2_in_base_x*gravity_y) -
-            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
-            axis_y_rrr_axes2_in_base_y*gravity_y)
+        rrr_mu_2_o_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
+            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x)
+        )
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
+        rrr_d_Gamma_2_in_axes2_x = (
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_z = (
-        rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_o_in_axes1_z = (
+        rrr_J_1_in_spec1_zz*rrr_qdd_1_o + rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_in_axes2_x = (
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
+        )
         # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_in_axes2_xy = (
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
+        )
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_o_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
-            - rrr_N_1_o_z)
+        rrr_c_o_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
-        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        rrr_c_o_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        )
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
+            inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
+        )
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (rrr-U) velocity and gravity terms of the leg force
-        rrr_U_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
-        )
-        rrr_U_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
-        )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
+        rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_U_in_base_x, rrr_U_in_base_y,
+        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_U_x, rrr_U_y,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_x, total_rrr_y = sums
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+    M_tt_rrr_xx, M_tt_xy, M_tt_rrr_yy, Z_t_rrr_x, Z_t_rrr_y = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rrr_xx
-    M_tt_yy = m_star - total_rrr_yy
+    M_tt_xx = M_tt_rrr_xx + m_star
+    M_tt_yy = M_tt_rrr_yy + m_star
     # (Z_t) translational part of Z
-    Z_t_x = total_rrr_x - Z_p_x
-    Z_t_y = total_rrr_y - Z_p_y
+    Z_t_x = Z_p_x + Z_t_rrr_x
+    Z_t_y = Z_p_y + Z_t_rrr_y
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = total_rrr_xy
-    out_M[2] = total_rrr_xy
+    out_M[1] = M_tt_xy
+    out_M[2] = M_tt_xy
     out_M[3] = M_tt_yy
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     return ok, (out_M, out_Z, out_H,)
@@ -1286,25 +1297,26 @@ def _run_M(m, X):
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
-            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+            rrr_d_phi_2_in_axes2_xy, rrr_h_2_in_spec2_y, rrr_joint2_offset_x,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1313,68 +1325,73 @@ def _run_M(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
-        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
-        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = (
-        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
-            rrr_d_Gamma_2_x*rrr_w_2_t
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
+        rrr_d_Gamma_2_in_axes2_x = (
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
-        rrr_Q_t_2 = 0.5*rrr_Q_t
-        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
-        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
-        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
-        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
-        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_in_axes2_x = (
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
+        )
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_in_axes2_xy = (
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
+        )
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
+        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
+        rrr_Q_t_3 = (
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
+            inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
+        )
+        rrr_Q_t_4 = 0.5*rrr_Q_t_3
+        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7,
+        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy,
         ))
-    total_rrr_xx, total_rrr_xy, total_rrr_yy = sums
+    M_tt_rrr_xx, M_tt_xy, M_tt_rrr_yy = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rrr_xx
-    M_tt_yy = m_star - total_rrr_yy
+    M_tt_xx = M_tt_rrr_xx + m_star
+    M_tt_yy = M_tt_rrr_yy + m_star
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = total_rrr_xy
-    out_M[2] = total_rrr_xy
+    out_M[1] = M_tt_xy
+    out_M[2] = M_tt_xy
     out_M[3] = M_tt_yy
     return ok, (out_M,)
 
@@ -1399,25 +1416,26 @@ def _run_Z(m, X, V):
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1426,98 +1444,93 @@ def _run_Z(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
+        rrr_qd_1_t_3 = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
         )
-        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_bias_x
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
+        )
+        # (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x
         # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrr_alpha_2_o_z = (
-        rrr_qdd_1_o + inv_rrr_platform_joint_offset_x*(rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_r0_x)
+        rrr_alpha_2_o_in_axes2_z = (
+        rrr_qdd_1_o + rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
+            rrr_qdd_1_o*rrr_r_1_in_axes2_x)
         )
         # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_o_z = (
-        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_h_2_y*(axis_y_rrr_axes2_in_base_y*gravity_x -
-            axis_y_rrr_axes2_in_base_x*gravity_y) -
-            rrr_h_2_x*(axis_y_rrr_axes2_in_base_x*gravity_x +
-            axis_y_rrr_axes2_in_base_y*gravity_y)
+        rrr_mu_2_o_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
+            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x)
         )
         # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_z = (
-        rrr_J_1_zz*rrr_qdd_1_o + rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_o_in_axes1_z = (
+        rrr_J_1_in_spec1_zz*rrr_qdd_1_o + rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_o_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
-            - rrr_N_1_o_z)
+        rrr_c_o_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
-        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        rrr_c_o_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        )
         # (rrr-U) velocity and gravity terms of the leg force
-        rrr_U_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
-        )
-        rrr_U_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
-        )
+        rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
+        rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_U_in_base_x, rrr_U_in_base_y,
+        rrr_U_x, rrr_U_y,
         ))
-    total_rrr_x, total_rrr_y = sums
+    Z_t_rrr_x, Z_t_rrr_y = sums
     # (Z_t) translational part of Z
-    Z_t_x = total_rrr_x - Z_p_x
-    Z_t_y = total_rrr_y - Z_p_y
+    Z_t_x = Z_p_x + Z_t_rrr_x
+    Z_t_y = Z_p_y + Z_t_rrr_y
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     return ok, (out_Z,)
@@ -1536,7 +1549,7 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
             rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
@@ -1545,14 +1558,14 @@ def _run_H(m, X):
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1561,40 +1574,41 @@ def _run_H(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        rrr_w_1_t = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        rrr_w_1_t_2 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = (
+        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
+        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = (
+        -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
+        )
+        rrr_w_1_y = (
+        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
     return ok, (out_H,)
 
 
@@ -1630,25 +1644,26 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 2
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1657,111 +1672,112 @@ def _run_required(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
+        )
         # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
-        )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_tip_x = (
-        axis_y_rrr_axes2_in_base_y*t_ddot_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
-        )
-        rrr_S_ddot_tip_y = (
-        axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
-        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_x = (
-        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         )
-        rrr_acc_2_y = (
-        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
-        )
+        # (rrr-B_1) acceleration tensor of link 1
+        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        rrr_alpha_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_in_axes1_xy
+        )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_in_axes2_x = (
+        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
+        )
+        rrr_acc_2_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        rrr_mu_2_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
+        )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
-            rrr_N_1_z)
+        rrr_c_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
-        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
-        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
-        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
+        rrr_c_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        )
+        rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
+        rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_c_in_base_x, rrr_c_in_base_y,
+        rrr_c_x, rrr_c_y,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
-    total_rrr_x, total_rrr_y = sums
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+    R_t_t, R_t_t_2 = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rrr_x
-    R_t_y = f_p_y - total_rrr_y
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     return ok, (out_required, out_H,)
@@ -1781,7 +1797,7 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
             rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
@@ -1790,14 +1806,14 @@ def _run_inverse_kinematics(m, X):
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1806,25 +1822,26 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         # (rrr-q_1) displacement of joint 1
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_q_1 = (
         atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
             inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
         )
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
         # (rrr-q_2) displacement of joint 2
         rrr_q_2 = (
-        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
+        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
+        # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
+        # (rrr-q_2) displacement of joint 2
         out_q[_q_rrr[1][leg]] = rrr_q_2
     return ok, (out_q,)
 
@@ -1847,24 +1864,24 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1873,45 +1890,43 @@ def _run_joint_rates(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
+        rrr_qd_1_t_3 = (
+        (axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)/rrr_r_1_in_axes2_y
         )
         # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        (axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)/rrr_r_1_r0_y
-        )
         rrr_qd_2 = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2))
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        # (rrr-qd_1) rate of joint 1
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t_3
+        # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
 
@@ -1939,24 +1954,24 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1965,66 +1980,65 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
+        rrr_qd_1_t_3 = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
+        )
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        rrr_bias_in_axes2_x = (
+        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+            rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = (
-        axis_y_rrr_axes2_in_base_y*t_ddot_x - rrr_bias_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
+        rrr_rel_in_axes2_x = (
+        axis_x_rrr_axes2_x*t_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*t_ddot_y
         )
-        rrr_rel_y = (
-        axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y +
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        rrr_rel_in_axes2_y = (
+        axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x +
+            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         )
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        # (rrr-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1_t
+        # (rrr-qdd_2) acceleration of joint 2
         out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     return ok, (out_qdd,)
 
@@ -2054,25 +2068,26 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_mu_1_t, rrr_mu_1_t_2,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2081,113 +2096,114 @@ def _run_legs(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*t_dot_x - axis_y_rrr_axes2_in_base_x*t_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
-            axis_y_rrr_axes2_in_base_y*t_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x - axis_y_rrr_axes2_x*t_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
+        )
         # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
-        )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-S_ddot) acceleration of the connection point
-        rrr_S_ddot_tip_x = (
-        axis_y_rrr_axes2_in_base_y*t_ddot_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
-        )
-        rrr_S_ddot_tip_y = (
-        axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - axis_y_rrr_axes2_x*t_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x - rrr_W_2_t*rrr_platform_joint_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
-        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_x = (
-        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2
         )
-        rrr_acc_2_y = (
-        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
-        )
+        # (rrr-B_1) acceleration tensor of link 1
+        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        rrr_alpha_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_in_axes1_xy
+        )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_in_axes2_x = (
+        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
+        )
+        rrr_acc_2_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        rrr_mu_2_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
+        )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
-            rrr_N_1_z)
+        rrr_c_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
-        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
-        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
-        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
-        rrr_c_true_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
+        rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
+        rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass
+        rrr_c_true_x = (
+        axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y
         )
-        rrr_c_true_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
+        rrr_c_true_y = (
+        axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
-        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
+        # (rrr-w_1) reciprocal vector 1
+        out_drive[_drive_rrr[0][leg]] = rrr_w_1_x
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2208,24 +2224,25 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
-            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
-            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+            rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2234,36 +2251,39 @@ def _run_potential(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
         # (potential) potential energy
-        rrr_potential_t = (
-        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
-            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
-            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
-            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
+        rrr_potential_t_3 = (
+        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
+            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
         sums = m.added(sums, leg, (
-        rrr_potential_t,
+        rrr_potential_t_3,
         ))
-    total_rrr, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_rrr
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -2273,7 +2293,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     # X: named entries
@@ -2286,12 +2306,13 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
             rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
             rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
             rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
@@ -2300,14 +2321,14 @@ def _run_condition(m, X):
         rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x
         rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2316,61 +2337,62 @@ def _run_condition(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        rrr_w_1_t = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        rrr_w_1_t_2 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = (
+        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
+        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = (
+        -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
+        )
+        rrr_w_1_y = (
+        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
+        )
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_pivot_size = abs(rrr_rho2_1)
+        rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
         # (spread) rms distance of the platform points from their centroid
-        rrr_spread_t = b_c_x - rrr_platform_point_x
-        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y
         rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
-        # (rrr-rho2_1) squared amplitude
-        rrr_pivot_size = abs(rrr_rho2_1)
-        # (rrr-w_1) reciprocal vector 1
-        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_least_pivots = (
-        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
-        )
         clear = (
         clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
-            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         rrr_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
         out_reach[_reach_rrr[0][leg]] = rrr_disc_1
-    total_rrr, = sums
+    spread_rrr, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_rrr)
+    spread = sqrt(spread_rrr)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

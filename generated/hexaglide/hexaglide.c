@@ -520,20 +520,20 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_pus = 0;
-    real total_pus_x = 0;
-    real total_pus_y = 0;
-    real total_pus_z = 0;
-    real total_pus_xx = 0;
-    real total_pus_xy = 0;
-    real total_pus_xz = 0;
-    real total_pus_yy = 0;
-    real total_pus_yz = 0;
-    real total_pus_zz = 0;
-    real total_pus_x_2 = 0;
-    real total_pus_y_2 = 0;
-    real total_pus_z_2 = 0;
-    real total_pus_2 = 0;
+    real m_star_pus = 0;
+    real h_star_pus_in_platform_x = 0;
+    real h_star_pus_in_platform_y = 0;
+    real h_star_pus_in_platform_z = 0;
+    real J_star_pus_in_platform_xx = 0;
+    real J_star_pus_in_platform_xy = 0;
+    real J_star_pus_in_platform_xz = 0;
+    real J_star_pus_in_platform_yy = 0;
+    real J_star_pus_in_platform_yz = 0;
+    real J_star_pus_in_platform_zz = 0;
+    real b_c_pus_in_platform_x = 0;
+    real b_c_pus_in_platform_y = 0;
+    real b_c_pus_in_platform_z = 0;
+    real legs_size_pus = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -604,46 +604,71 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real pus_branch_1 = signs_pus_branch_1[own];
         static const signed char signs_pus_branch_2[] = {1, 1, 1, 1, 1, 1};
         const real pus_branch_2 = signs_pus_branch_2[own];
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x;
         /* (pus-size) length of the leg's lever arms, the measure of what is near singular */
-        const real pus_size_t = R(4.9e-07) + pus_disc_1_t;
-        const real pus_size = root(pus_size_t);
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = 1/pus_disc_1_t;
+        const real pus_size_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x;
+        const real pus_size_t_2 = R(4.9e-07) + pus_size_t;
+        const real pus_size = root(pus_size_t_2);
+        /* (pus-h_1) first moment of link 1 about the origin of link 1 */
+        const real pus_h_1_in_spec0_x = pus_link1_centre_of_mass_x*pus_link1_mass;
+        const real pus_h_1_in_spec0_y = pus_link1_centre_of_mass_y*pus_link1_mass;
+        const real pus_h_1_in_spec0_z = pus_link1_centre_of_mass_z*pus_link1_mass;
         /* (pus-rho_tip_3) connection point to the centre of mass of link 3 */
-        const real pus_rho_tip_3_x = pus_link3_centre_of_mass_x - pus_platform_joint_offset_x;
+        const real pus_rho_tip_3_in_spec3_x = pus_link3_centre_of_mass_x -
+            pus_platform_joint_offset_x;
         /* (pus-h_3) first moment of link 3 about the connection point */
-        const real pus_h_3_x = pus_link3_mass*pus_rho_tip_3_x;
-        const real pus_h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass;
-        const real pus_h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass;
-        /* (pus-w_3) reciprocal vector 3 */
-        const real inv_pus_platform_joint_offset_x = 1/pus_platform_joint_offset_x;
-        /* (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real pus_d_phi_3_t = inv_pus_platform_joint_offset_x*pus_h_3_z;
+        const real pus_h_3_in_spec3_x = pus_link3_mass*pus_rho_tip_3_in_spec3_x;
+        const real pus_h_3_in_spec3_y = pus_link3_centre_of_mass_y*pus_link3_mass;
+        const real pus_h_3_in_spec3_z = pus_link3_centre_of_mass_z*pus_link3_mass;
         /* (pus-J_3) inertia tensor of link 3 about the connection point */
-        const real pus_J_3_t = pus_rho_tip_3_x*pus_rho_tip_3_x;
+        const real inv_pus_size_t = 1/pus_size_t;
+        const real pus_J_3_t = pus_rho_tip_3_in_spec3_x*pus_rho_tip_3_in_spec3_x;
         const real pus_J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y;
         const real pus_J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z;
         const real pus_J_3_t_4 = pus_J_3_t + pus_J_3_t_2 + pus_J_3_t_3;
-        const real pus_J_3_xx = pus_link3_inertia_xx - pus_link3_mass*(pus_J_3_t - pus_J_3_t_4);
-        const real pus_J_3_xy = pus_link3_inertia_xy -
-            pus_link3_centre_of_mass_y*pus_link3_mass*pus_rho_tip_3_x;
-        const real pus_J_3_xz = pus_link3_inertia_xz -
-            pus_link3_centre_of_mass_z*pus_link3_mass*pus_rho_tip_3_x;
-        const real pus_J_3_yy = pus_link3_inertia_yy - pus_link3_mass*(pus_J_3_t_2 - pus_J_3_t_4);
-        const real pus_J_3_yz = pus_link3_inertia_yz -
+        const real pus_J_3_in_spec3_xx = pus_link3_inertia_xx - pus_link3_mass*(pus_J_3_t -
+            pus_J_3_t_4);
+        const real pus_J_3_in_spec3_xy = pus_link3_inertia_xy -
+            pus_link3_centre_of_mass_y*pus_link3_mass*pus_rho_tip_3_in_spec3_x;
+        const real pus_J_3_in_spec3_xz = pus_link3_inertia_xz -
+            pus_link3_centre_of_mass_z*pus_link3_mass*pus_rho_tip_3_in_spec3_x;
+        const real pus_J_3_in_spec3_yy = pus_link3_inertia_yy - pus_link3_mass*(pus_J_3_t_2 -
+            pus_J_3_t_4);
+        const real pus_J_3_in_spec3_yz = pus_link3_inertia_yz -
             pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass;
-        const real pus_J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 - pus_J_3_t_4);
+        const real pus_J_3_in_spec3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 -
+            pus_J_3_t_4);
+        /* (pus-w_3) reciprocal vector 3 */
+        const real pus_w_3_in_axes3_y = 1/pus_platform_joint_offset_x;
+        /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real pus_g_in_axes0_x = gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx +
+            gravity_z*pus_base_frame_zx;
+        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real pus_g_in_axes0_y = gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy +
+            gravity_z*pus_base_frame_zy;
+        const real pus_g_in_axes0_z = gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz +
+            gravity_z*pus_base_frame_zz;
+        /* (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real pus_d_phi_3_in_axes3_xy = pus_h_3_in_spec3_z*pus_w_3_in_axes3_y;
+        /* (pus-trace_J_3) half the trace of that inertia tensor */
+        const real pus_trace_J_3 = R(0.5)*pus_J_3_in_spec3_xx + R(0.5)*pus_J_3_in_spec3_yy +
+            R(0.5)*pus_J_3_in_spec3_zz;
+        /* (pus-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real pus_Sigma_3_in_axes3_xx = pus_trace_J_3 - pus_J_3_in_spec3_xx;
+        const real pus_Sigma_3_in_axes3_yy = pus_trace_J_3 - pus_J_3_in_spec3_zz;
+        const real pus_Sigma_3_in_axes3_zz = pus_trace_J_3 - pus_J_3_in_spec3_yy;
         /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real pus_d_Gamma_3_t = inv_pus_platform_joint_offset_x*pus_J_3_yy;
-        const real pus_d_Gamma_3_y = pus_d_Gamma_3_t + pus_h_3_x;
+        const real pus_d_Gamma_3_t = pus_J_3_in_spec3_yy*pus_w_3_in_axes3_y;
+        const real pus_d_Gamma_3_in_axes3_y = pus_d_Gamma_3_t + pus_h_3_in_spec3_x;
+        /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_pus_size_t_2 = 1/pus_size_t_2;
+        const real inv_pus_size = 1/pus_size;
         /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real pus_d_c_yy = -inv_pus_platform_joint_offset_x*pus_d_Gamma_3_y -
-            inv_pus_platform_joint_offset_x*pus_h_3_x;
+        const real pus_d_c_in_axes3_yy = -pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_y -
+            pus_h_3_in_spec3_x*pus_w_3_in_axes3_y;
         /* (h_star) first moment about the platform origin */
         const real pus_h_star_t = pus_link3_mass*pus_platform_point_x;
         const real pus_h_star_t_2 = pus_link3_mass*pus_platform_point_y;
@@ -659,48 +684,25 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real pus_J_star_t_8 = pus_link3_mass*(pus_J_star_t_2 - pus_J_star_t_4);
         const real pus_J_star_t_9 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z;
         const real pus_J_star_t_10 = pus_link3_mass*(pus_J_star_t_3 - pus_J_star_t_4);
-        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real pus_g_r0_x = gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx +
-            gravity_z*pus_base_frame_zx;
-        const real pus_g_r0_y = gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy +
-            gravity_z*pus_base_frame_zy;
-        const real pus_g_r0_z = gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz +
-            gravity_z*pus_base_frame_zz;
-        /* (pus-trace_J_3) half the trace of that inertia tensor */
-        const real pus_trace_J_3 = R(0.5)*pus_J_3_xx + R(0.5)*pus_J_3_yy + R(0.5)*pus_J_3_zz;
-        /* (pus-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real pus_Sigma_3_xx = pus_trace_J_3 - pus_J_3_xx;
-        const real pus_Sigma_3_yy = pus_trace_J_3 - pus_J_3_zz;
-        const real pus_Sigma_3_zz = pus_trace_J_3 - pus_J_3_yy;
-        /* (pus-h_1) first moment of link 1 about the origin of link 1 */
-        const real pus_h_1_x = pus_link1_centre_of_mass_x*pus_link1_mass;
-        const real pus_h_1_y = pus_link1_centre_of_mass_y*pus_link1_mass;
-        const real pus_h_1_z = pus_link1_centre_of_mass_z*pus_link1_mass;
         /* (potential) potential energy */
-        const real pus_b_r0_x = pus_base_frame_xx*pus_base_point_x +
+        const real pus_b_in_axes0_x = pus_base_frame_xx*pus_base_point_x +
             pus_base_frame_yx*pus_base_point_y + pus_base_frame_zx*pus_base_point_z;
         const real pus_potential_t = pus_link1_mass*(pus_base_frame_xy*pus_base_point_x +
             pus_base_frame_yy*pus_base_point_y + pus_base_frame_zy*pus_base_point_z);
         const real pus_potential_t_2 = pus_link1_mass*(pus_base_frame_xz*pus_base_point_x +
             pus_base_frame_yz*pus_base_point_y + pus_base_frame_zz*pus_base_point_z);
-        /* (pus-rho2_2) squared amplitude */
-        const real inv_pus_size_t = 1/pus_size_t;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real inv_pus_size = 1/pus_size;
-        model->inv_pus_disc_1_t_6[leg] = inv_pus_disc_1_t_6;
-        model->inv_pus_platform_joint_offset_x[leg] = inv_pus_platform_joint_offset_x;
         model->inv_pus_size[leg] = inv_pus_size;
         model->inv_pus_size_t[leg] = inv_pus_size_t;
-        model->pus_J_3_xx[leg] = pus_J_3_xx;
-        model->pus_J_3_xy[leg] = pus_J_3_xy;
-        model->pus_J_3_xz[leg] = pus_J_3_xz;
-        model->pus_J_3_yz[leg] = pus_J_3_yz;
-        model->pus_J_3_zz[leg] = pus_J_3_zz;
-        model->pus_Sigma_3_xx[leg] = pus_Sigma_3_xx;
-        model->pus_Sigma_3_yy[leg] = pus_Sigma_3_yy;
-        model->pus_Sigma_3_zz[leg] = pus_Sigma_3_zz;
-        model->pus_b_r0_x[leg] = pus_b_r0_x;
+        model->inv_pus_size_t_2[leg] = inv_pus_size_t_2;
+        model->pus_J_3_in_spec3_xx[leg] = pus_J_3_in_spec3_xx;
+        model->pus_J_3_in_spec3_xy[leg] = pus_J_3_in_spec3_xy;
+        model->pus_J_3_in_spec3_xz[leg] = pus_J_3_in_spec3_xz;
+        model->pus_J_3_in_spec3_yz[leg] = pus_J_3_in_spec3_yz;
+        model->pus_J_3_in_spec3_zz[leg] = pus_J_3_in_spec3_zz;
+        model->pus_Sigma_3_in_axes3_xx[leg] = pus_Sigma_3_in_axes3_xx;
+        model->pus_Sigma_3_in_axes3_yy[leg] = pus_Sigma_3_in_axes3_yy;
+        model->pus_Sigma_3_in_axes3_zz[leg] = pus_Sigma_3_in_axes3_zz;
+        model->pus_b_in_axes0_x[leg] = pus_b_in_axes0_x;
         model->pus_base_frame_xx[leg] = pus_base_frame_xx;
         model->pus_base_frame_xy[leg] = pus_base_frame_xy;
         model->pus_base_frame_xz[leg] = pus_base_frame_xz;
@@ -715,20 +717,19 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         model->pus_base_point_z[leg] = pus_base_point_z;
         model->pus_branch_1[leg] = pus_branch_1;
         model->pus_branch_2[leg] = pus_branch_2;
+        model->pus_d_Gamma_3_in_axes3_y[leg] = pus_d_Gamma_3_in_axes3_y;
         model->pus_d_Gamma_3_t[leg] = pus_d_Gamma_3_t;
-        model->pus_d_Gamma_3_y[leg] = pus_d_Gamma_3_y;
-        model->pus_d_c_yy[leg] = pus_d_c_yy;
-        model->pus_d_phi_3_t[leg] = pus_d_phi_3_t;
-        model->pus_disc_1_t[leg] = pus_disc_1_t;
-        model->pus_g_r0_x[leg] = pus_g_r0_x;
-        model->pus_g_r0_y[leg] = pus_g_r0_y;
-        model->pus_g_r0_z[leg] = pus_g_r0_z;
-        model->pus_h_1_x[leg] = pus_h_1_x;
-        model->pus_h_1_y[leg] = pus_h_1_y;
-        model->pus_h_1_z[leg] = pus_h_1_z;
-        model->pus_h_3_x[leg] = pus_h_3_x;
-        model->pus_h_3_y[leg] = pus_h_3_y;
-        model->pus_h_3_z[leg] = pus_h_3_z;
+        model->pus_d_c_in_axes3_yy[leg] = pus_d_c_in_axes3_yy;
+        model->pus_d_phi_3_in_axes3_xy[leg] = pus_d_phi_3_in_axes3_xy;
+        model->pus_g_in_axes0_x[leg] = pus_g_in_axes0_x;
+        model->pus_g_in_axes0_y[leg] = pus_g_in_axes0_y;
+        model->pus_g_in_axes0_z[leg] = pus_g_in_axes0_z;
+        model->pus_h_1_in_spec0_x[leg] = pus_h_1_in_spec0_x;
+        model->pus_h_1_in_spec0_y[leg] = pus_h_1_in_spec0_y;
+        model->pus_h_1_in_spec0_z[leg] = pus_h_1_in_spec0_z;
+        model->pus_h_3_in_spec3_x[leg] = pus_h_3_in_spec3_x;
+        model->pus_h_3_in_spec3_y[leg] = pus_h_3_in_spec3_y;
+        model->pus_h_3_in_spec3_z[leg] = pus_h_3_in_spec3_z;
         model->pus_link1_mass[leg] = pus_link1_mass;
         model->pus_link3_mass[leg] = pus_link3_mass;
         model->pus_platform_joint_offset_x[leg] = pus_platform_joint_offset_x;
@@ -739,65 +740,73 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         model->pus_potential_t_2[leg] = pus_potential_t_2;
         model->pus_size[leg] = pus_size;
         model->pus_size_t[leg] = pus_size_t;
-        total_pus += leg < 6 ? pus_link3_mass : 0;
-        total_pus_x += leg < 6 ? pus_h_star_t : 0;
-        total_pus_y += leg < 6 ? pus_h_star_t_2 : 0;
-        total_pus_z += leg < 6 ? pus_h_star_t_3 : 0;
-        total_pus_xx += leg < 6 ? pus_J_star_t_5 : 0;
-        total_pus_xy += leg < 6 ? pus_J_star_t_6 : 0;
-        total_pus_xz += leg < 6 ? pus_J_star_t_7 : 0;
-        total_pus_yy += leg < 6 ? pus_J_star_t_8 : 0;
-        total_pus_yz += leg < 6 ? pus_J_star_t_9 : 0;
-        total_pus_zz += leg < 6 ? pus_J_star_t_10 : 0;
-        total_pus_x_2 += leg < 6 ? pus_platform_point_x : 0;
-        total_pus_y_2 += leg < 6 ? pus_platform_point_y : 0;
-        total_pus_z_2 += leg < 6 ? pus_platform_point_z : 0;
-        total_pus_2 += leg < 6 ? pus_size_t : 0;
+        model->pus_size_t_2[leg] = pus_size_t_2;
+        model->pus_w_3_in_axes3_y[leg] = pus_w_3_in_axes3_y;
+        m_star_pus += leg < 6 ? pus_link3_mass : 0;
+        h_star_pus_in_platform_x += leg < 6 ? pus_h_star_t : 0;
+        h_star_pus_in_platform_y += leg < 6 ? pus_h_star_t_2 : 0;
+        h_star_pus_in_platform_z += leg < 6 ? pus_h_star_t_3 : 0;
+        J_star_pus_in_platform_xx += leg < 6 ? -pus_J_star_t_5 : 0;
+        J_star_pus_in_platform_xy += leg < 6 ? -pus_J_star_t_6 : 0;
+        J_star_pus_in_platform_xz += leg < 6 ? -pus_J_star_t_7 : 0;
+        J_star_pus_in_platform_yy += leg < 6 ? -pus_J_star_t_8 : 0;
+        J_star_pus_in_platform_yz += leg < 6 ? -pus_J_star_t_9 : 0;
+        J_star_pus_in_platform_zz += leg < 6 ? -pus_J_star_t_10 : 0;
+        b_c_pus_in_platform_x += leg < 6 ? pus_platform_point_x : 0;
+        b_c_pus_in_platform_y += leg < 6 ? pus_platform_point_y : 0;
+        b_c_pus_in_platform_z += leg < 6 ? pus_platform_point_z : 0;
+        legs_size_pus += leg < 6 ? pus_size_t_2 : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_pus;
+    const real m_star = m_star_pus + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_pus_x;
-    const real h_star_y = h_star_t_2 + total_pus_y;
-    const real h_star_z = h_star_t_3 + total_pus_z;
+    const real h_star_in_platform_x = h_star_pus_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_pus_in_platform_y + h_star_t_2;
+    const real h_star_in_platform_z = h_star_pus_in_platform_z + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_pus_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_pus_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_pus_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_pus_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_pus_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_pus_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_pus_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_pus_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_pus_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_pus_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_pus_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_pus_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.16666666666666666)*total_pus_x_2;
-    const real b_c_y = R(0.16666666666666666)*total_pus_y_2;
-    const real b_c_z = R(0.16666666666666666)*total_pus_z_2;
+    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_pus_in_platform_x;
+    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_pus_in_platform_y;
+    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_pus_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_pus_2);
+    const real legs_size = root(legs_size_pus)*spread_t;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1367,41 +1376,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1412,26 +1427,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1450,21 +1474,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1475,375 +1499,390 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
+        /* (pus-J_3) inertia tensor of link 3 about the connection point */
         const real R_xx = s[3*w + j];
         const real R_xy = s[4*w + j];
         const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_J_3_t = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
+        const real pus_J_3_t_4 = pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx;
+        const real pus_J_3_t_5 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 +
+            pus_J_3_t_3*pus_J_3_t_3;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_J_3_t_6 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_5;
         const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
+        const real pus_J_3_t_7 = -root(pus_J_3_t_6)*pus_branch_1;
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
-        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_J_3_t_8 = pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy;
+        const real pus_J_3_t_9 = pus_J_3_t_7*pus_J_3_t_7 + pus_J_3_t_8*pus_J_3_t_8;
         const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_J_3_t_10 = root(pus_J_3_t_9)*pus_branch_2;
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_J_3_t_11 = inv_pus_size_t*pus_J_3_t_10*pus_platform_joint_offset_x;
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        const real pus_e_2_in_axes3_x =
+            inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz);
+        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
+        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
+        const real pus_J_3_in_axes2_xz = pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_yz*pus_J_3_t_11;
         /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        const real inv_pus_J_3_t_9 = 1/pus_J_3_t_9;
+        const real pus_c_2_t = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_8;
         /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
-        const real inv_pus_v_2_t = 1/pus_v_2_t;
-        const real inv_pus_w_2_t = 1/pus_w_2_t;
-        const real pus_w_2_t_2 = inv_pus_v_2_t*inv_pus_w_2_t*pus_c_2;
-        /* (pus-w_3) reciprocal vector 3 */
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real pus_w_3_t = inv_pus_platform_joint_offset_x*inv_pus_w_2_t*pus_w_1_t;
-        /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real pus_d_alpha_3_t = inv_pus_v_2_t*pus_s_3;
-        const real pus_d_alpha_3_t_2 = inv_pus_v_2_t*pus_c_3;
-        /* (pus-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
-        const real pus_J_3_xy = m->pus_J_3_xy[i];
-        const real pus_J_3_yz = m->pus_J_3_yz[i];
-        const real pus_L_c_3_r0_y = pus_J_3_xy*pus_s_3 + pus_J_3_yz*pus_c_3;
-        /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real pus_d_Gamma_3_t_2 = inv_pus_v_2_t*pus_L_c_3_r0_y;
-        const real pus_d_Gamma_3_t = m->pus_d_Gamma_3_t[i];
-        const real pus_h_3_z = m->pus_h_3_z[i];
-        const real pus_d_Gamma_3_x = pus_h_3_z - inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_3_t_2 +
-            pus_d_Gamma_3_t*pus_w_1_t);
-        /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real pus_J_3_xx = m->pus_J_3_xx[i];
-        const real pus_J_3_xz = m->pus_J_3_xz[i];
-        const real pus_J_3_zz = m->pus_J_3_zz[i];
-        const real pus_d_Gamma_2_t = inv_pus_v_2_t*(pus_s_3*(pus_J_3_xx*pus_s_3 +
-            pus_J_3_xz*pus_c_3) - pus_c_3*(-pus_J_3_xz*pus_s_3 - pus_J_3_zz*pus_c_3));
-        const real pus_d_Gamma_2_t_2 = inv_pus_platform_joint_offset_x*pus_L_c_3_r0_y;
-        const real pus_h_3_y = m->pus_h_3_y[i];
-        const real pus_d_Gamma_2_x = -inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_2_t +
-            pus_d_Gamma_2_t_2*pus_w_1_t) - pus_c_3*pus_h_3_y;
-        const real pus_d_Gamma_2_y = pus_d_Gamma_2_t_2 - pus_h_3_y*pus_s_3;
-        const real pus_h_3_x = m->pus_h_3_x[i];
-        const real pus_d_Gamma_2_z = pus_d_Gamma_2_t + pus_c_3*pus_h_3_x - pus_h_3_z*pus_s_3;
-        /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_d_c_xx = pus_d_Gamma_2_x*pus_w_2_t_2 + pus_d_Gamma_3_x*pus_w_3_t +
-            pus_h_3_z*pus_w_3_t - inv_pus_w_2_t*inv_pus_w_2_t*pus_link1_mass -
-            pus_c_3*pus_h_3_y*pus_w_2_t_2;
-        const real pus_d_Gamma_3_y = m->pus_d_Gamma_3_y[i];
-        const real pus_d_phi_3_t = m->pus_d_phi_3_t[i];
-        const real pus_d_c_xy = pus_d_Gamma_2_y*pus_w_2_t_2 + pus_d_Gamma_3_y*pus_w_3_t -
-            pus_d_phi_3_t;
-        const real pus_d_c_xz = pus_d_Gamma_2_z*pus_w_2_t_2 + pus_d_Gamma_3_t_2*pus_w_3_t +
-            pus_d_alpha_3_t_2*pus_h_3_y;
-        const real pus_d_c_yz = pus_d_alpha_3_t*pus_h_3_y -
-            inv_pus_platform_joint_offset_x*pus_d_Gamma_3_t_2;
-        /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real pus_d_c_yy = m->pus_d_c_yy[i];
-        const real pus_Q_t = pus_d_c_xx - pus_d_c_yy;
-        const real pus_Q_t_2 = R(0.5)*pus_Q_t;
-        const real pus_Q_t_3 = pus_d_c_xx + inv_pus_v_2_t*pus_d_Gamma_2_z +
-            pus_d_alpha_3_t_2*pus_h_3_x - pus_d_alpha_3_t*pus_h_3_z;
-        const real pus_Q_t_4 = R(0.5)*pus_Q_t_3;
-        const real pus_Q_t_5 = axis_x_pus_axes3_x*pus_d_c_xy +
-            axis_z_pus_axes3_in_base_x*pus_d_c_yz - axis_y_pus_axes3_in_base_x*pus_Q_t_2;
-        const real pus_Q_t_6 = axis_x_pus_axes3_y*pus_d_c_xy +
-            axis_z_pus_axes3_in_base_y*pus_d_c_yz - axis_y_pus_axes3_in_base_y*pus_Q_t_2;
-        const real pus_Q_t_7 = axis_x_pus_axes3_z*pus_d_c_xy +
-            axis_z_pus_axes3_in_base_z*pus_d_c_yz - axis_y_pus_axes3_in_base_z*pus_Q_t_2;
-        const real pus_Q_t_8 = axis_z_pus_axes3_in_base_x*pus_Q_t_4 -
-            axis_x_pus_axes3_x*pus_d_c_xz;
-        const real pus_Q_t_9 = axis_z_pus_axes3_in_base_y*pus_Q_t_4 -
-            axis_x_pus_axes3_y*pus_d_c_xz;
-        const real pus_Q_t_10 = axis_z_pus_axes3_in_base_z*pus_Q_t_4 -
-            axis_x_pus_axes3_z*pus_d_c_xz;
-        const real pus_Q_t_11 = axis_y_pus_axes3_in_base_x*pus_Q_t_5 -
-            axis_z_pus_axes3_in_base_x*pus_Q_t_8;
-        const real pus_Q_t_12 = 2*pus_Q_t_11 + pus_d_c_xx;
-        const real pus_Q_t_13 = axis_y_pus_axes3_in_base_x*pus_Q_t_6 +
-            axis_y_pus_axes3_in_base_y*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_9 -
-            axis_z_pus_axes3_in_base_y*pus_Q_t_8;
-        const real pus_Q_t_14 = axis_y_pus_axes3_in_base_x*pus_Q_t_7 +
-            axis_y_pus_axes3_in_base_z*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_10 -
-            axis_z_pus_axes3_in_base_z*pus_Q_t_8;
-        const real pus_Q_t_15 = axis_y_pus_axes3_in_base_y*pus_Q_t_6 -
-            axis_z_pus_axes3_in_base_y*pus_Q_t_9;
-        const real pus_Q_t_16 = 2*pus_Q_t_15 + pus_d_c_xx;
-        const real pus_Q_t_17 = axis_y_pus_axes3_in_base_y*pus_Q_t_7 +
-            axis_y_pus_axes3_in_base_z*pus_Q_t_6 - axis_z_pus_axes3_in_base_y*pus_Q_t_10 -
-            axis_z_pus_axes3_in_base_z*pus_Q_t_9;
-        const real pus_Q_t_18 = axis_y_pus_axes3_in_base_z*pus_Q_t_7 -
-            axis_z_pus_axes3_in_base_z*pus_Q_t_10;
-        const real pus_Q_t_19 = 2*pus_Q_t_18 + pus_d_c_xx;
-        /* (M_ta) coupling block of M */
-        const real pus_M_ta_t = pus_Q_t_13*pus_q_in_base_z;
-        const real pus_M_ta_t_2 = pus_Q_t_14*pus_q_in_base_y;
-        const real pus_M_ta_t_3 = pus_M_ta_t - pus_M_ta_t_2;
-        const real pus_M_ta_t_4 = pus_Q_t_12*pus_q_in_base_z - pus_Q_t_14*pus_q_in_base_x;
-        const real pus_M_ta_t_5 = pus_Q_t_12*pus_q_in_base_y - pus_Q_t_13*pus_q_in_base_x;
-        const real pus_M_ta_t_6 = pus_Q_t_16*pus_q_in_base_z - pus_Q_t_17*pus_q_in_base_y;
-        const real pus_M_ta_t_7 = pus_Q_t_17*pus_q_in_base_x;
-        const real pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7;
-        const real pus_M_ta_t_9 = pus_Q_t_13*pus_q_in_base_y - pus_Q_t_16*pus_q_in_base_x;
-        const real pus_M_ta_t_10 = pus_Q_t_17*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_y;
-        const real pus_M_ta_t_11 = pus_Q_t_14*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_x;
-        const real pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real pus_M_aa_t = pus_M_ta_t_6*pus_q_in_base_z - pus_M_ta_t_10*pus_q_in_base_y;
-        const real pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_y;
-        const real pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_in_base_y + pus_M_ta_t_9*pus_q_in_base_z;
-        const real pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_x;
-        const real pus_M_aa_t_5 = pus_M_ta_t_12*pus_q_in_base_x + pus_M_ta_t_5*pus_q_in_base_z;
-        const real pus_M_aa_t_6 = pus_M_ta_t_5*pus_q_in_base_y - pus_M_ta_t_9*pus_q_in_base_x;
+        const real pus_s_2 = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_7;
         /* (pus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
         const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
         const real t_dot_x = s[12*w + j];
         const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_in_axes3_z = pus_J_3_t_11*pus_platform_joint_offset_x;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_e_1_in_axes3_y = pus_e_2_in_axes3_x*pus_s_2;
+        const real pus_w_1_t = pus_c_2_t*pus_e_2_in_axes3_x;
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_w_1_t - pus_J_3_t_11*pus_base_frame_xz;
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_w_1_t - pus_J_3_t_11*pus_base_frame_yz;
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_w_1_t - pus_J_3_t_11*pus_base_frame_zz;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
+        const real pus_e_1_in_axes3_x = pus_J_3_t_11*pus_s_2;
+        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+        const real pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x;
+        const real pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x;
+        const real pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+        const real pus_w_2_in_axes3_x = pus_c_2_t*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z;
+        /* (pus-w_3) reciprocal vector 3 */
+        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+        const real pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y;
+        /* (pus-qd_1) rate of joint 1 */
+        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
             axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
-        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_qd_1*pus_w_1_t;
-        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
-        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1);
+        /* (pus-qd_2) rate of joint 2 */
+        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
+            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
         /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_t = pus_qd_2*pus_s_3;
-        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
-        /* (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3;
-        const real pus_zeta_3_y = pus_omega_2_t*pus_qd_3;
+        const real pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2;
+        const real pus_omega_2_in_axes3_y = -pus_J_3_t_11*pus_qd_2;
+        /* (pus-W_3) centripetal tensor of link 3 */
+        const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
+        const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
+        const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
         /* (pus-u_1) centripetal acceleration of the connection point */
         const real pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
         const real pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
         const real pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
-        /* (pus-W_3) centripetal tensor of link 3 */
-        const real pus_W_3_t = pus_omega_2_t*pus_omega_2_t;
-        const real pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2;
-        const real pus_W_3_t_3 = pus_qd_3*pus_qd_3;
-        const real pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2;
+        const real pus_u_1_in_axes3_x = axis_x_pus_axes3_x*pus_u_1_x +
+            axis_x_pus_axes3_y*pus_u_1_y + axis_x_pus_axes3_z*pus_u_1_z;
+        const real pus_u_1_in_axes3_y = axis_y_pus_axes3_x*pus_u_1_x +
+            axis_y_pus_axes3_y*pus_u_1_y + axis_y_pus_axes3_z*pus_u_1_z;
+        const real pus_u_1_in_axes3_z = axis_z_pus_axes3_x*pus_u_1_x +
+            axis_z_pus_axes3_y*pus_u_1_y + axis_z_pus_axes3_z*pus_u_1_z;
         /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
-        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
-            pus_platform_joint_offset_x*pus_zeta_3_y;
-        /* (pus-u_1) centripetal acceleration of the connection point */
-        const real pus_u_1_tip_x = axis_x_pus_axes3_x*pus_u_1_x + axis_x_pus_axes3_y*pus_u_1_y +
-            axis_x_pus_axes3_z*pus_u_1_z;
-        const real pus_u_1_tip_y = axis_y_pus_axes3_in_base_x*pus_u_1_x +
-            axis_y_pus_axes3_in_base_y*pus_u_1_y + axis_y_pus_axes3_in_base_z*pus_u_1_z;
-        const real pus_u_1_tip_z = axis_z_pus_axes3_in_base_x*pus_u_1_x +
-            axis_z_pus_axes3_in_base_y*pus_u_1_y + axis_z_pus_axes3_in_base_z*pus_u_1_z;
+        const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
+            pus_omega_2_in_axes3_x*pus_qd_3_t;
         /* (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real pus_rel_o_x = pus_u_1_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t;
-        const real pus_rel_o_y = pus_u_1_tip_y + pus_bias_t*pus_omega_2_t;
-        const real pus_rel_o_z = pus_u_1_tip_z - pus_bias_z;
+        const real pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
+        const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t
+            + pus_qd_3*pus_qd_3_t;
+        const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t;
+        const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z;
+        /* (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x;
+        /* (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
+            pus_c_2_t*pus_qdd_1_o);
         /* (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real pus_qdd_1_o = inv_pus_w_2_t*pus_rel_o_x;
-        const real pus_qdd_3_o = inv_pus_platform_joint_offset_x*(pus_qdd_1_o*pus_w_1_t -
-            pus_rel_o_y);
-        const real pus_qdd_2_o = inv_pus_v_2_t*(pus_c_2*pus_qdd_1_o - pus_rel_o_z);
+        const real pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o -
+            pus_rel_o_in_axes3_y);
         /* (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real pus_alpha_2_o_t = pus_qdd_2_o*pus_s_3;
-        const real pus_alpha_2_o_t_2 = pus_c_3*pus_qdd_2_o;
+        const real pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t;
+        const real pus_alpha_2_o_in_axes3_y = pus_J_3_t_11*pus_qdd_2_o_t;
+        /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z;
+        const real pus_d_alpha_3_t = pus_J_3_t_11*pus_w_2_in_axes3_z;
         /* (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real pus_alpha_3_o_x = -pus_alpha_2_o_t - pus_zeta_3_x;
-        const real pus_alpha_3_o_y = pus_alpha_2_o_t_2 - pus_zeta_3_y;
+        const real pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
+        const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz;
         /* (pus-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real pus_B_3_o_xy = pus_qdd_3_o - pus_W_3_xy;
-        const real pus_B_3_o_yx = -pus_W_3_xy - pus_qdd_3_o;
-        const real pus_B_3_o_zx = pus_zeta_3_y - pus_alpha_3_o_y;
-        const real pus_B_3_o_zy = pus_alpha_3_o_x - pus_zeta_3_x;
-        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real pus_g_r0_x = m->pus_g_r0_x[i];
-        const real pus_g_r0_y = m->pus_g_r0_y[i];
-        const real pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y;
-        const real pus_g_r0_z = m->pus_g_r0_z[i];
-        const real pus_acc_3_o_x = pus_u_1_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3;
-        const real pus_acc_3_o_y = pus_u_1_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3;
-        const real pus_acc_3_o_z = pus_u_1_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2;
-        /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real pus_Sigma_3_yy = m->pus_Sigma_3_yy[i];
-        const real pus_Sigma_3_zz = m->pus_Sigma_3_zz[i];
-        const real pus_mu_3_o_x = pus_B_3_o_yx*pus_J_3_xy + pus_B_3_o_zx*pus_J_3_xz +
-            pus_B_3_o_zy*pus_Sigma_3_yy - pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) -
-            pus_Sigma_3_zz*pus_alpha_2_o_t - pus_acc_3_o_y*pus_h_3_y - pus_acc_3_o_z*pus_h_3_z;
-        const real pus_Sigma_3_xx = m->pus_Sigma_3_xx[i];
-        const real pus_mu_3_o_y = pus_B_3_o_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_o_t_2 +
-            pus_acc_3_o_x*pus_h_3_y - pus_B_3_o_zx*pus_Sigma_3_xx - pus_B_3_o_zy*pus_J_3_xz -
-            pus_J_3_xy*(pus_W_3_t - pus_W_3_t_3) - pus_acc_3_o_z*pus_h_3_x;
-        const real pus_mu_3_o_z = pus_B_3_o_yx*pus_Sigma_3_xx + pus_acc_3_o_x*pus_h_3_z +
-            pus_acc_3_o_y*pus_h_3_x - pus_B_3_o_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_o_t -
-            pus_J_3_xz*(pus_W_3_t - pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_o_t_2;
+        const real pus_B_3_o_in_axes3_xy = pus_W_3_in_axes3_xy - pus_qdd_3_o;
+        const real pus_B_3_o_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3_o;
+        const real pus_B_3_o_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y;
+        const real pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x;
         /* (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
-        const real pus_acc_1_o_x = -pus_g_r0_x - pus_qdd_1_o;
+        const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
+        const real pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x;
+        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
+        const real pus_acc_3_o_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2;
+        const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
+        const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x + pus_J_3_t_11*pus_acc_3_o_t -
+            pus_e_2_in_axes3_x*pus_g_in_axes0_z;
+        const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y + pus_J_3_t_11*pus_g_in_axes0_z +
+            pus_acc_3_o_t*pus_e_2_in_axes3_x;
+        const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x -
+            pus_g_in_axes0_y*pus_s_2;
+        /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
+        const real pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
+        const real pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
+        const real pus_Sigma_3_in_axes3_yy = m->pus_Sigma_3_in_axes3_yy[i];
+        const real pus_Sigma_3_in_axes3_zz = m->pus_Sigma_3_in_axes3_zz[i];
+        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
+        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+        const real pus_mu_3_o_in_axes3_x = pus_B_3_o_in_axes3_yx*pus_J_3_in_spec3_xy +
+            pus_B_3_o_in_axes3_zx*pus_J_3_in_spec3_xz +
+            pus_B_3_o_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_o_t_2 -
+            pus_mu_3_o_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_t -
+            pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_z;
+        const real pus_Sigma_3_in_axes3_xx = m->pus_Sigma_3_in_axes3_xx[i];
+        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+        const real pus_mu_3_o_in_axes3_y = pus_B_3_o_in_axes3_xy*pus_J_3_in_spec3_yz +
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_in_axes3_y +
+            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_y -
+            pus_B_3_o_in_axes3_zx*pus_Sigma_3_in_axes3_xx -
+            pus_B_3_o_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_o_t -
+            pus_mu_3_o_t_3) - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_x;
+        const real pus_mu_3_o_in_axes3_z = pus_B_3_o_in_axes3_yx*pus_Sigma_3_in_axes3_xx +
+            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_z + pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_x
+            - pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t
+            - pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
+            pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y;
+        /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_xz*pus_w_2_in_axes3_z;
+        const real pus_d_Gamma_3_t = m->pus_d_Gamma_3_t[i];
+        const real pus_d_Gamma_3_in_axes3_x = pus_h_3_in_spec3_z +
+            pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_3_in_axes3_z -
+            pus_d_Gamma_3_t*pus_e_1_in_axes3_y);
+        /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real pus_J_3_in_spec3_xx = m->pus_J_3_in_spec3_xx[i];
+        const real pus_J_3_in_spec3_zz = m->pus_J_3_in_spec3_zz[i];
+        const real pus_d_Gamma_2_t =
+            pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*(pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_xz*pus_J_3_t_11) -
+            pus_J_3_t_11*(-pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x -
+            pus_J_3_in_spec3_zz*pus_J_3_t_11));
+        const real pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_xz*pus_w_3_in_axes3_y;
+        const real pus_d_Gamma_2_in_axes3_x = pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_2_t -
+            pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) - pus_J_3_t_11*pus_h_3_in_spec3_y;
+        const real pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 -
+            pus_e_2_in_axes3_x*pus_h_3_in_spec3_y;
+        const real pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t + pus_J_3_t_11*pus_h_3_in_spec3_x -
+            pus_e_2_in_axes3_x*pus_h_3_in_spec3_z;
         /* (pus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real pus_G_o_t = inv_pus_v_2_t*(pus_mu_3_o_x*pus_s_3 - pus_c_3*pus_mu_3_o_y);
-        const real pus_G_o_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_o_z;
+        const real pus_G_o_in_axes3_z =
+            pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x -
+            pus_J_3_t_11*pus_mu_3_o_in_axes3_y);
+        const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y;
+        /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real pus_link1_mass = m->pus_link1_mass[i];
+        const real pus_d_c_in_axes3_xx = pus_J_3_t_11*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+            pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
+            pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x;
+        const real pus_d_Gamma_3_in_axes3_y = m->pus_d_Gamma_3_in_axes3_y[i];
+        const real pus_d_phi_3_in_axes3_xy = m->pus_d_phi_3_in_axes3_xy[i];
+        const real pus_d_c_in_axes3_xy = -pus_d_phi_3_in_axes3_xy -
+            pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_x;
+        const real pus_d_c_in_axes3_xz = pus_d_alpha_3_t*pus_h_3_in_spec3_y -
+            pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x;
+        const real pus_d_c_in_axes3_yz = pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y -
+            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y;
         /* (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real pus_c_o_x = inv_pus_w_2_t*(pus_G_o_t*pus_c_2 + pus_G_o_t_2*pus_w_1_t +
-            pus_acc_1_o_x*pus_link1_mass) + pus_B_3_o_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 +
-            pus_W_3_t_3) - pus_alpha_2_o_t_2*pus_h_3_y;
-        const real pus_c_o_y = -pus_G_o_t_2 - pus_B_3_o_yx*pus_h_3_x - pus_alpha_2_o_t*pus_h_3_y -
-            pus_h_3_z*(pus_W_3_t + pus_W_3_t_3);
-        const real pus_c_o_z = pus_B_3_o_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) -
-            pus_G_o_t - pus_B_3_o_zx*pus_h_3_x;
+        const real pus_c_o_in_axes3_x = pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 + pus_mu_3_o_t_3) -
+            pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_w_1_in_axes3_x*(pus_G_o_in_axes3_z*pus_c_2_t +
+            pus_acc_1_o_in_axes0_x*pus_link1_mass - pus_G_o_in_axes3_y*pus_e_1_in_axes3_y);
+        const real pus_c_o_in_axes3_y = -pus_G_o_in_axes3_y -
+            pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x - pus_alpha_2_o_t*pus_h_3_in_spec3_y -
+            pus_h_3_in_spec3_z*(pus_mu_3_o_t + pus_mu_3_o_t_3);
+        const real pus_c_o_in_axes3_z = pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_y*(pus_mu_3_o_t + pus_mu_3_o_t_2) - pus_G_o_in_axes3_z -
+            pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x;
+        /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real pus_d_c_in_axes3_yy = m->pus_d_c_in_axes3_yy[i];
+        const real pus_Q_t = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy;
+        const real pus_Q_t_2 = R(0.5)*pus_Q_t;
+        const real pus_Q_t_3 = pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
+            pus_d_alpha_3_t*pus_h_3_in_spec3_x - pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z;
+        const real pus_Q_t_4 = R(0.5)*pus_Q_t_3;
+        const real pus_Q_t_5 = axis_x_pus_axes3_x*pus_d_c_in_axes3_xy +
+            axis_z_pus_axes3_x*pus_d_c_in_axes3_yz - axis_y_pus_axes3_x*pus_Q_t_2;
+        const real pus_Q_t_6 = axis_x_pus_axes3_y*pus_d_c_in_axes3_xy +
+            axis_z_pus_axes3_y*pus_d_c_in_axes3_yz - axis_y_pus_axes3_y*pus_Q_t_2;
+        const real pus_Q_t_7 = axis_x_pus_axes3_z*pus_d_c_in_axes3_xy +
+            axis_z_pus_axes3_z*pus_d_c_in_axes3_yz - axis_y_pus_axes3_z*pus_Q_t_2;
+        const real pus_Q_t_8 = axis_z_pus_axes3_x*pus_Q_t_4 -
+            axis_x_pus_axes3_x*pus_d_c_in_axes3_xz;
+        const real pus_Q_t_9 = axis_z_pus_axes3_y*pus_Q_t_4 -
+            axis_x_pus_axes3_y*pus_d_c_in_axes3_xz;
+        const real pus_Q_t_10 = axis_z_pus_axes3_z*pus_Q_t_4 -
+            axis_x_pus_axes3_z*pus_d_c_in_axes3_xz;
+        const real pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 - axis_z_pus_axes3_x*pus_Q_t_8;
+        const real pus_Q_xx = -2*pus_Q_t_11 - pus_d_c_in_axes3_xx;
+        const real pus_Q_xy = axis_z_pus_axes3_x*pus_Q_t_9 + axis_z_pus_axes3_y*pus_Q_t_8 -
+            axis_y_pus_axes3_x*pus_Q_t_6 - axis_y_pus_axes3_y*pus_Q_t_5;
+        const real pus_Q_xz = axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_8 -
+            axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_5;
+        const real pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 - axis_z_pus_axes3_y*pus_Q_t_9;
+        const real pus_Q_yy = -2*pus_Q_t_12 - pus_d_c_in_axes3_xx;
+        const real pus_Q_yz = axis_z_pus_axes3_y*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_9 -
+            axis_y_pus_axes3_y*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_6;
+        const real pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 - axis_z_pus_axes3_z*pus_Q_t_10;
+        const real pus_Q_zz = -2*pus_Q_t_13 - pus_d_c_in_axes3_xx;
         /* (pus-U) velocity and gravity terms of the leg force */
-        const real pus_U_in_base_x = -axis_x_pus_axes3_x*pus_c_o_x -
-            axis_y_pus_axes3_in_base_x*pus_c_o_y - axis_z_pus_axes3_in_base_x*pus_c_o_z;
-        const real pus_U_in_base_y = -axis_x_pus_axes3_y*pus_c_o_x -
-            axis_y_pus_axes3_in_base_y*pus_c_o_y - axis_z_pus_axes3_in_base_y*pus_c_o_z;
-        const real pus_U_in_base_z = -axis_x_pus_axes3_z*pus_c_o_x -
-            axis_y_pus_axes3_in_base_z*pus_c_o_y - axis_z_pus_axes3_in_base_z*pus_c_o_z;
+        const real pus_U_x = -axis_x_pus_axes3_x*pus_c_o_in_axes3_x -
+            axis_y_pus_axes3_x*pus_c_o_in_axes3_y - axis_z_pus_axes3_x*pus_c_o_in_axes3_z;
+        const real pus_U_y = -axis_x_pus_axes3_y*pus_c_o_in_axes3_x -
+            axis_y_pus_axes3_y*pus_c_o_in_axes3_y - axis_z_pus_axes3_y*pus_c_o_in_axes3_z;
+        const real pus_U_z = -axis_x_pus_axes3_z*pus_c_o_in_axes3_x -
+            axis_y_pus_axes3_z*pus_c_o_in_axes3_y - axis_z_pus_axes3_z*pus_c_o_in_axes3_z;
+        /* (M_ta) coupling block of M */
+        const real pus_M_ta_t = -pus_Q_xy*pus_q_z;
+        const real pus_M_ta_t_2 = pus_Q_xz*pus_q_y;
+        const real pus_M_ta_t_3 = pus_M_ta_t + pus_M_ta_t_2;
+        const real pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x;
+        const real pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y;
+        const real pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z;
+        const real pus_M_ta_t_7 = pus_Q_yz*pus_q_x;
+        const real pus_M_ta_t_8 = pus_M_ta_t + pus_M_ta_t_7;
+        const real pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y;
+        const real pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z;
+        const real pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x;
+        const real pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z;
+        const real pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y + pus_M_ta_t_8*pus_q_z;
+        const real pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z;
+        const real pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x;
+        const real pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x;
+        const real pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y;
         /* (Z_a) rotational part of Z */
-        const real pus_Z_a_t = pus_U_in_base_z*pus_q_in_base_y - pus_U_in_base_y*pus_q_in_base_z;
-        const real pus_Z_a_t_2 = pus_U_in_base_x*pus_q_in_base_z -
-            pus_U_in_base_z*pus_q_in_base_x;
-        const real pus_Z_a_t_3 = pus_U_in_base_y*pus_q_in_base_x -
-            pus_U_in_base_x*pus_q_in_base_y;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t;
-        const real pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t;
-        const real pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t;
+        const real pus_Z_a_t = pus_U_z*pus_q_y - pus_U_y*pus_q_z;
+        const real pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x;
+        const real pus_Z_a_t_3 = pus_U_y*pus_q_x - pus_U_x*pus_q_y;
         /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        const real pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5;
-        const real pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3;
-        const real pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4;
-        terms[0*count + k] = add ? terms[0*count + k] + pus_Q_t_12 : pus_Q_t_12;  /* total_pus_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + pus_Q_t_13 : pus_Q_t_13;  /* total_pus_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + pus_Q_t_14 : pus_Q_t_14;  /* total_pus_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + pus_Q_t_16 : pus_Q_t_16;  /* total_pus_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + pus_Q_t_17 : pus_Q_t_17;  /* total_pus_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + pus_Q_t_19 : pus_Q_t_19;  /* total_pus_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + pus_M_ta_t_3 : pus_M_ta_t_3;  /* total_pus_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + pus_M_ta_t_4 : pus_M_ta_t_4;  /* total_pus_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + pus_M_ta_t_5 : pus_M_ta_t_5;  /* total_pus_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + pus_M_ta_t_6 : pus_M_ta_t_6;  /* total_pus_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + pus_M_ta_t_8 : pus_M_ta_t_8;  /* total_pus_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + pus_M_ta_t_9 : pus_M_ta_t_9;  /* total_pus_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + pus_M_ta_t_10 : pus_M_ta_t_10;  /* total_pus_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + pus_M_ta_t_11 : pus_M_ta_t_11;  /* total_pus_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + pus_M_ta_t_12 : pus_M_ta_t_12;  /* total_pus_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + pus_M_aa_t : pus_M_aa_t;  /* total_pus_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + pus_M_aa_t_2 : pus_M_aa_t_2;  /* total_pus_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + pus_M_aa_t_3 : pus_M_aa_t_3;  /* total_pus_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + pus_M_aa_t_4 : pus_M_aa_t_4;  /* total_pus_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + pus_M_aa_t_5 : pus_M_aa_t_5;  /* total_pus_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + pus_M_aa_t_6 : pus_M_aa_t_6;  /* total_pus_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + pus_U_in_base_x : pus_U_in_base_x;  /* total_pus_x */
-        terms[22*count + k] = add ? terms[22*count + k] + pus_U_in_base_y : pus_U_in_base_y;  /* total_pus_y */
-        terms[23*count + k] = add ? terms[23*count + k] + pus_U_in_base_z : pus_U_in_base_z;  /* total_pus_z */
-        terms[24*count + k] = add ? terms[24*count + k] + pus_Z_a_t : pus_Z_a_t;  /* total_pus_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + pus_Z_a_t_2 : pus_Z_a_t_2;  /* total_pus_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + pus_Z_a_t_3 : pus_Z_a_t_3;  /* total_pus_z_2 */
-        o[0*count + k] = -pus_w_1_t_3;
-        o[1*count + k] = -pus_w_1_t_4;
-        o[2*count + k] = -pus_w_1_t_5;
+        const real pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y;
+        const real pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z;
+        const real pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + pus_Q_xx : pus_Q_xx;  /* M_tt_pus_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + pus_Q_xy : pus_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + pus_Q_xz : pus_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + pus_Q_yy : pus_Q_yy;  /* M_tt_pus_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + pus_Q_yz : pus_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + pus_Q_zz : pus_Q_zz;  /* M_tt_pus_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + pus_M_ta_t_3 : pus_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + pus_M_ta_t_4 : pus_M_ta_t_4;  /* M_ta_pus_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + pus_M_ta_t_5 : pus_M_ta_t_5;  /* M_ta_pus_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + pus_M_ta_t_6 : pus_M_ta_t_6;  /* M_ta_pus_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + pus_M_ta_t_8 : pus_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + pus_M_ta_t_9 : pus_M_ta_t_9;  /* M_ta_pus_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + pus_M_ta_t_10 : pus_M_ta_t_10;  /* M_ta_pus_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + pus_M_ta_t_11 : pus_M_ta_t_11;  /* M_ta_pus_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + pus_M_ta_t_12 : pus_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + pus_M_aa_t : pus_M_aa_t;  /* M_aa_pus_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + pus_M_aa_t_2 : pus_M_aa_t_2;  /* M_aa_pus_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + pus_M_aa_t_3 : pus_M_aa_t_3;  /* M_aa_pus_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + pus_M_aa_t_4 : pus_M_aa_t_4;  /* M_aa_pus_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + pus_M_aa_t_5 : pus_M_aa_t_5;  /* M_aa_pus_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + pus_M_aa_t_6 : pus_M_aa_t_6;  /* M_aa_pus_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + pus_U_x : pus_U_x;  /* Z_t_pus_x */
+        terms[22*count + k] = add ? terms[22*count + k] + pus_U_y : pus_U_y;  /* Z_t_pus_y */
+        terms[23*count + k] = add ? terms[23*count + k] + pus_U_z : pus_U_z;  /* Z_t_pus_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + pus_Z_a_t : pus_Z_a_t;  /* Z_a_pus_x */
+        terms[25*count + k] = add ? terms[25*count + k] + pus_Z_a_t_2 : pus_Z_a_t_2;  /* Z_a_pus_y */
+        terms[26*count + k] = add ? terms[26*count + k] + pus_Z_a_t_3 : pus_Z_a_t_3;  /* Z_a_pus_z */
+        /* (pus-w_1) reciprocal vector 1 */
+        o[0*count + k] = pus_w_1_x;
+        o[1*count + k] = pus_w_1_y;
+        o[2*count + k] = pus_w_1_z;
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = pus_H_a_1_x;
         o[4*count + k] = pus_H_a_1_y;
         o[5*count + k] = pus_H_a_1_z;
-        o[8*count + k] = (pus_w_1_t_3 + (pus_w_1_t_4 + pus_w_1_t_5)) + (pus_H_a_1_x + (pus_H_a_1_y
-            + pus_H_a_1_z));
-        const real pus_size_t = m->pus_size_t[i];
+        o[8*count + k] = (pus_w_1_x + (pus_w_1_y + pus_w_1_z)) + (pus_H_a_1_x + (pus_H_a_1_y +
+            pus_H_a_1_z));
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[6*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
-            TOLERANCE*1);
+        o[6*count + k] = UNLESS(pus_J_3_t_6 >= 0);
+        o[7*count + k] = UNLESS(magnitude(pus_J_3_t_9) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -1868,101 +1907,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_pus_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_pus_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_pus_xx;
-        const real total_pus_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_pus_yy;
-        const real total_pus_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_pus_zz;
+        const real M_tt_xx = M_tt_pus_xx + m_star;
+        const real M_tt_pus_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_pus_yy + m_star;
+        const real M_tt_pus_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_pus_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_pus_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_pus_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_pus_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_pus_xz_2 - h_star_in_base_y;
-        const real total_pus_yx = sums[9*w + k];
-        const real M_ta_yx = total_pus_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_pus_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_pus_yz_2;
-        const real total_pus_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_pus_zx;
-        const real total_pus_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_pus_zy;
+        const real M_ta_pus_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_pus_xy + h_star_z;
+        const real M_ta_pus_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_pus_xz - h_star_y;
+        const real M_ta_pus_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_pus_yx - h_star_z;
+        const real M_ta_pus_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_pus_yz + h_star_x;
+        const real M_ta_pus_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_pus_zx + h_star_y;
+        const real M_ta_pus_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_pus_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_pus_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_pus_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_pus_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_pus_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_pus_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_pus_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_pus_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_pus_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_pus_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_pus_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_pus_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_pus_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_pus_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_pus_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_pus_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_pus_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_pus_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_pus_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_pus_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_pus_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_pus_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_pus_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_pus_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_pus_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_pus_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_pus_x;
+        const real Z_t_pus_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_pus_x;
         const real Z_p_y = s[28*w + k];
-        const real total_pus_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_pus_y;
+        const real Z_t_pus_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_pus_y;
         const real Z_p_z = s[29*w + k];
-        const real total_pus_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_pus_z;
+        const real Z_t_pus_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_pus_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_pus_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_pus_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_pus_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_pus_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_pus_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_pus_z_2;
+        const real Z_a_pus_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_pus_x + Z_q_x;
+        const real Z_a_pus_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_pus_y + Z_q_y;
+        const real Z_a_pus_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_pus_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_pus_xy = sums[1*w + k];
-        M[1*w + k] = -total_pus_xy;
-        M[6*w + k] = -total_pus_xy;
-        const real total_pus_xz = sums[2*w + k];
-        M[2*w + k] = -total_pus_xz;
-        M[12*w + k] = -total_pus_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_pus_yz = sums[4*w + k];
-        M[8*w + k] = -total_pus_yz;
-        M[13*w + k] = -total_pus_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_pus_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_pus_xx_2;
-        M[18*w + k] = total_pus_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_pus_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_pus_yy_2;
-        M[25*w + k] = -total_pus_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_pus_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_pus_zz_2;
-        M[32*w + k] = -total_pus_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1972,17 +2014,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_pus_xy + total_pus_xz)) + (M_tt_yy + (total_pus_yz +
-            M_tt_zz))) + ((total_pus_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_pus_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_pus_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -2053,37 +2096,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2096,15 +2145,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2115,231 +2164,227 @@ INLINE void M_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
+        /* (pus-J_3) inertia tensor of link 3 about the connection point */
         const real R_xx = s[3*w + j];
         const real R_xy = s[4*w + j];
         const real R_xz = s[5*w + j];
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_J_3_t = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
+        const real pus_J_3_t_4 = pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx;
+        const real pus_J_3_t_5 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 +
+            pus_J_3_t_3*pus_J_3_t_3;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_J_3_t_6 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_5;
         const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
+        const real pus_J_3_t_7 = -root(pus_J_3_t_6)*pus_branch_1;
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
-        /* (pus-root_2) root, with the sign of the branch */
+        const real pus_J_3_t_8 = pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy;
+        const real pus_J_3_t_9 = pus_J_3_t_7*pus_J_3_t_7 + pus_J_3_t_8*pus_J_3_t_8;
         const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real pus_J_3_t_10 = root(pus_J_3_t_9)*pus_branch_2;
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_J_3_t_11 = inv_pus_size_t*pus_J_3_t_10*pus_platform_joint_offset_x;
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
+        const real pus_e_2_in_axes3_x =
+            inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz);
+        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
+        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
+        const real pus_J_3_in_axes2_xz = pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_yz*pus_J_3_t_11;
         /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
+        const real inv_pus_J_3_t_9 = 1/pus_J_3_t_9;
+        const real pus_c_2_t = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_8;
         /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        const real pus_s_2 = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_7;
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_in_axes3_z = pus_J_3_t_11*pus_platform_joint_offset_x;
         /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
+        const real pus_e_1_in_axes3_x = pus_J_3_t_11*pus_s_2;
+        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
         /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
-        const real inv_pus_v_2_t = 1/pus_v_2_t;
-        const real inv_pus_w_2_t = 1/pus_w_2_t;
-        const real pus_w_2_t_2 = inv_pus_v_2_t*inv_pus_w_2_t*pus_c_2;
+        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+        const real pus_w_2_in_axes3_x = pus_c_2_t*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z;
         /* (pus-w_3) reciprocal vector 3 */
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real pus_w_3_t = inv_pus_platform_joint_offset_x*inv_pus_w_2_t*pus_w_1_t;
+        const real pus_e_1_in_axes3_y = pus_e_2_in_axes3_x*pus_s_2;
+        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+        const real pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y;
         /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real pus_d_alpha_3_t = inv_pus_v_2_t*pus_s_3;
-        const real pus_d_alpha_3_t_2 = inv_pus_v_2_t*pus_c_3;
-        /* (pus-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
-        const real pus_J_3_xy = m->pus_J_3_xy[i];
-        const real pus_J_3_yz = m->pus_J_3_yz[i];
-        const real pus_L_c_3_r0_y = pus_J_3_xy*pus_s_3 + pus_J_3_yz*pus_c_3;
+        const real pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z;
+        const real pus_d_alpha_3_t = pus_J_3_t_11*pus_w_2_in_axes3_z;
         /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real pus_d_Gamma_3_t_2 = inv_pus_v_2_t*pus_L_c_3_r0_y;
+        const real pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_xz*pus_w_2_in_axes3_z;
         const real pus_d_Gamma_3_t = m->pus_d_Gamma_3_t[i];
-        const real pus_h_3_z = m->pus_h_3_z[i];
-        const real pus_d_Gamma_3_x = pus_h_3_z - inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_3_t_2 +
-            pus_d_Gamma_3_t*pus_w_1_t);
+        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+        const real pus_d_Gamma_3_in_axes3_x = pus_h_3_in_spec3_z +
+            pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_3_in_axes3_z -
+            pus_d_Gamma_3_t*pus_e_1_in_axes3_y);
         /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real pus_J_3_xx = m->pus_J_3_xx[i];
-        const real pus_J_3_xz = m->pus_J_3_xz[i];
-        const real pus_J_3_zz = m->pus_J_3_zz[i];
-        const real pus_d_Gamma_2_t = inv_pus_v_2_t*(pus_s_3*(pus_J_3_xx*pus_s_3 +
-            pus_J_3_xz*pus_c_3) - pus_c_3*(-pus_J_3_xz*pus_s_3 - pus_J_3_zz*pus_c_3));
-        const real pus_d_Gamma_2_t_2 = inv_pus_platform_joint_offset_x*pus_L_c_3_r0_y;
-        const real pus_h_3_y = m->pus_h_3_y[i];
-        const real pus_d_Gamma_2_x = -inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_2_t +
-            pus_d_Gamma_2_t_2*pus_w_1_t) - pus_c_3*pus_h_3_y;
-        const real pus_d_Gamma_2_y = pus_d_Gamma_2_t_2 - pus_h_3_y*pus_s_3;
-        const real pus_h_3_x = m->pus_h_3_x[i];
-        const real pus_d_Gamma_2_z = pus_d_Gamma_2_t + pus_c_3*pus_h_3_x - pus_h_3_z*pus_s_3;
+        const real pus_J_3_in_spec3_xx = m->pus_J_3_in_spec3_xx[i];
+        const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
+        const real pus_J_3_in_spec3_zz = m->pus_J_3_in_spec3_zz[i];
+        const real pus_d_Gamma_2_t =
+            pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*(pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_xz*pus_J_3_t_11) -
+            pus_J_3_t_11*(-pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x -
+            pus_J_3_in_spec3_zz*pus_J_3_t_11));
+        const real pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_xz*pus_w_3_in_axes3_y;
+        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
+        const real pus_d_Gamma_2_in_axes3_x = pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_2_t -
+            pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) - pus_J_3_t_11*pus_h_3_in_spec3_y;
+        const real pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 -
+            pus_e_2_in_axes3_x*pus_h_3_in_spec3_y;
+        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+        const real pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t + pus_J_3_t_11*pus_h_3_in_spec3_x -
+            pus_e_2_in_axes3_x*pus_h_3_in_spec3_z;
         /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
         const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_d_c_xx = pus_d_Gamma_2_x*pus_w_2_t_2 + pus_d_Gamma_3_x*pus_w_3_t +
-            pus_h_3_z*pus_w_3_t - inv_pus_w_2_t*inv_pus_w_2_t*pus_link1_mass -
-            pus_c_3*pus_h_3_y*pus_w_2_t_2;
-        const real pus_d_Gamma_3_y = m->pus_d_Gamma_3_y[i];
-        const real pus_d_phi_3_t = m->pus_d_phi_3_t[i];
-        const real pus_d_c_xy = pus_d_Gamma_2_y*pus_w_2_t_2 + pus_d_Gamma_3_y*pus_w_3_t -
-            pus_d_phi_3_t;
-        const real pus_d_c_xz = pus_d_Gamma_2_z*pus_w_2_t_2 + pus_d_Gamma_3_t_2*pus_w_3_t +
-            pus_d_alpha_3_t_2*pus_h_3_y;
-        const real pus_d_c_yz = pus_d_alpha_3_t*pus_h_3_y -
-            inv_pus_platform_joint_offset_x*pus_d_Gamma_3_t_2;
+        const real pus_d_c_in_axes3_xx = pus_J_3_t_11*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+            pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
+            pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x;
+        const real pus_d_Gamma_3_in_axes3_y = m->pus_d_Gamma_3_in_axes3_y[i];
+        const real pus_d_phi_3_in_axes3_xy = m->pus_d_phi_3_in_axes3_xy[i];
+        const real pus_d_c_in_axes3_xy = -pus_d_phi_3_in_axes3_xy -
+            pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_x;
+        const real pus_d_c_in_axes3_xz = pus_d_alpha_3_t*pus_h_3_in_spec3_y -
+            pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x;
+        const real pus_d_c_in_axes3_yz = pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y -
+            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y;
         /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real pus_d_c_yy = m->pus_d_c_yy[i];
-        const real pus_Q_t = pus_d_c_xx - pus_d_c_yy;
-        const real pus_Q_t_2 = R(0.5)*pus_Q_t;
-        const real pus_Q_t_3 = pus_d_c_xx + inv_pus_v_2_t*pus_d_Gamma_2_z +
-            pus_d_alpha_3_t_2*pus_h_3_x - pus_d_alpha_3_t*pus_h_3_z;
-        const real pus_Q_t_4 = R(0.5)*pus_Q_t_3;
-        const real pus_Q_t_5 = axis_x_pus_axes3_x*pus_d_c_xy +
-            axis_z_pus_axes3_in_base_x*pus_d_c_yz - axis_y_pus_axes3_in_base_x*pus_Q_t_2;
-        const real pus_Q_t_6 = axis_x_pus_axes3_y*pus_d_c_xy +
-            axis_z_pus_axes3_in_base_y*pus_d_c_yz - axis_y_pus_axes3_in_base_y*pus_Q_t_2;
-        const real pus_Q_t_7 = axis_x_pus_axes3_z*pus_d_c_xy +
-            axis_z_pus_axes3_in_base_z*pus_d_c_yz - axis_y_pus_axes3_in_base_z*pus_Q_t_2;
-        const real pus_Q_t_8 = axis_z_pus_axes3_in_base_x*pus_Q_t_4 -
-            axis_x_pus_axes3_x*pus_d_c_xz;
-        const real pus_Q_t_9 = axis_z_pus_axes3_in_base_y*pus_Q_t_4 -
-            axis_x_pus_axes3_y*pus_d_c_xz;
-        const real pus_Q_t_10 = axis_z_pus_axes3_in_base_z*pus_Q_t_4 -
-            axis_x_pus_axes3_z*pus_d_c_xz;
-        const real pus_Q_t_11 = axis_y_pus_axes3_in_base_x*pus_Q_t_5 -
-            axis_z_pus_axes3_in_base_x*pus_Q_t_8;
-        const real pus_Q_t_12 = 2*pus_Q_t_11 + pus_d_c_xx;
-        const real pus_Q_t_13 = axis_y_pus_axes3_in_base_x*pus_Q_t_6 +
-            axis_y_pus_axes3_in_base_y*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_9 -
-            axis_z_pus_axes3_in_base_y*pus_Q_t_8;
-        const real pus_Q_t_14 = axis_y_pus_axes3_in_base_x*pus_Q_t_7 +
-            axis_y_pus_axes3_in_base_z*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_10 -
-            axis_z_pus_axes3_in_base_z*pus_Q_t_8;
-        const real pus_Q_t_15 = axis_y_pus_axes3_in_base_y*pus_Q_t_6 -
-            axis_z_pus_axes3_in_base_y*pus_Q_t_9;
-        const real pus_Q_t_16 = 2*pus_Q_t_15 + pus_d_c_xx;
-        const real pus_Q_t_17 = axis_y_pus_axes3_in_base_y*pus_Q_t_7 +
-            axis_y_pus_axes3_in_base_z*pus_Q_t_6 - axis_z_pus_axes3_in_base_y*pus_Q_t_10 -
-            axis_z_pus_axes3_in_base_z*pus_Q_t_9;
-        const real pus_Q_t_18 = axis_y_pus_axes3_in_base_z*pus_Q_t_7 -
-            axis_z_pus_axes3_in_base_z*pus_Q_t_10;
-        const real pus_Q_t_19 = 2*pus_Q_t_18 + pus_d_c_xx;
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_Q_t = pus_c_2_t*pus_e_2_in_axes3_x;
+        const real axis_y_pus_axes3_x = pus_Q_t*pus_base_frame_xy +
+            pus_base_frame_xx*pus_e_1_in_axes3_y - pus_J_3_t_11*pus_base_frame_xz;
+        const real axis_y_pus_axes3_y = pus_Q_t*pus_base_frame_yy +
+            pus_base_frame_yx*pus_e_1_in_axes3_y - pus_J_3_t_11*pus_base_frame_yz;
+        const real axis_y_pus_axes3_z = pus_Q_t*pus_base_frame_zy +
+            pus_base_frame_zx*pus_e_1_in_axes3_y - pus_J_3_t_11*pus_base_frame_zz;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
+        const real pus_d_c_in_axes3_yy = m->pus_d_c_in_axes3_yy[i];
+        const real pus_Q_t_2 = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy;
+        const real pus_Q_t_3 = R(0.5)*pus_Q_t_2;
+        const real pus_Q_t_4 = pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
+            pus_d_alpha_3_t*pus_h_3_in_spec3_x - pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z;
+        const real pus_Q_t_5 = R(0.5)*pus_Q_t_4;
+        const real pus_Q_t_6 = axis_x_pus_axes3_x*pus_d_c_in_axes3_xy +
+            axis_z_pus_axes3_x*pus_d_c_in_axes3_yz - axis_y_pus_axes3_x*pus_Q_t_3;
+        const real pus_Q_t_7 = axis_x_pus_axes3_y*pus_d_c_in_axes3_xy +
+            axis_z_pus_axes3_y*pus_d_c_in_axes3_yz - axis_y_pus_axes3_y*pus_Q_t_3;
+        const real pus_Q_t_8 = axis_x_pus_axes3_z*pus_d_c_in_axes3_xy +
+            axis_z_pus_axes3_z*pus_d_c_in_axes3_yz - axis_y_pus_axes3_z*pus_Q_t_3;
+        const real pus_Q_t_9 = axis_z_pus_axes3_x*pus_Q_t_5 -
+            axis_x_pus_axes3_x*pus_d_c_in_axes3_xz;
+        const real pus_Q_t_10 = axis_z_pus_axes3_y*pus_Q_t_5 -
+            axis_x_pus_axes3_y*pus_d_c_in_axes3_xz;
+        const real pus_Q_t_11 = axis_z_pus_axes3_z*pus_Q_t_5 -
+            axis_x_pus_axes3_z*pus_d_c_in_axes3_xz;
+        const real pus_Q_t_12 = axis_y_pus_axes3_x*pus_Q_t_6 - axis_z_pus_axes3_x*pus_Q_t_9;
+        const real pus_Q_xx = -2*pus_Q_t_12 - pus_d_c_in_axes3_xx;
+        const real pus_Q_xy = axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_y*pus_Q_t_9 -
+            axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_y*pus_Q_t_6;
+        const real pus_Q_xz = axis_z_pus_axes3_x*pus_Q_t_11 + axis_z_pus_axes3_z*pus_Q_t_9 -
+            axis_y_pus_axes3_x*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_6;
+        const real pus_Q_t_13 = axis_y_pus_axes3_y*pus_Q_t_7 - axis_z_pus_axes3_y*pus_Q_t_10;
+        const real pus_Q_yy = -2*pus_Q_t_13 - pus_d_c_in_axes3_xx;
+        const real pus_Q_yz = axis_z_pus_axes3_y*pus_Q_t_11 + axis_z_pus_axes3_z*pus_Q_t_10 -
+            axis_y_pus_axes3_y*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_7;
+        const real pus_Q_t_14 = axis_y_pus_axes3_z*pus_Q_t_8 - axis_z_pus_axes3_z*pus_Q_t_11;
+        const real pus_Q_zz = -2*pus_Q_t_14 - pus_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real pus_M_ta_t = pus_Q_t_13*pus_q_in_base_z;
-        const real pus_M_ta_t_2 = pus_Q_t_14*pus_q_in_base_y;
-        const real pus_M_ta_t_3 = pus_M_ta_t - pus_M_ta_t_2;
-        const real pus_M_ta_t_4 = pus_Q_t_12*pus_q_in_base_z - pus_Q_t_14*pus_q_in_base_x;
-        const real pus_M_ta_t_5 = pus_Q_t_12*pus_q_in_base_y - pus_Q_t_13*pus_q_in_base_x;
-        const real pus_M_ta_t_6 = pus_Q_t_16*pus_q_in_base_z - pus_Q_t_17*pus_q_in_base_y;
-        const real pus_M_ta_t_7 = pus_Q_t_17*pus_q_in_base_x;
-        const real pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7;
-        const real pus_M_ta_t_9 = pus_Q_t_13*pus_q_in_base_y - pus_Q_t_16*pus_q_in_base_x;
-        const real pus_M_ta_t_10 = pus_Q_t_17*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_y;
-        const real pus_M_ta_t_11 = pus_Q_t_14*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_x;
+        const real pus_M_ta_t = -pus_Q_xy*pus_q_z;
+        const real pus_M_ta_t_2 = pus_Q_xz*pus_q_y;
+        const real pus_M_ta_t_3 = pus_M_ta_t + pus_M_ta_t_2;
+        const real pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x;
+        const real pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y;
+        const real pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z;
+        const real pus_M_ta_t_7 = pus_Q_yz*pus_q_x;
+        const real pus_M_ta_t_8 = pus_M_ta_t + pus_M_ta_t_7;
+        const real pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y;
+        const real pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z;
+        const real pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x;
         const real pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real pus_M_aa_t = pus_M_ta_t_6*pus_q_in_base_z - pus_M_ta_t_10*pus_q_in_base_y;
-        const real pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_y;
-        const real pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_in_base_y + pus_M_ta_t_9*pus_q_in_base_z;
-        const real pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_x;
-        const real pus_M_aa_t_5 = pus_M_ta_t_12*pus_q_in_base_x + pus_M_ta_t_5*pus_q_in_base_z;
-        const real pus_M_aa_t_6 = pus_M_ta_t_5*pus_q_in_base_y - pus_M_ta_t_9*pus_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + pus_Q_t_12 : pus_Q_t_12;  /* total_pus_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + pus_Q_t_13 : pus_Q_t_13;  /* total_pus_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + pus_Q_t_14 : pus_Q_t_14;  /* total_pus_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + pus_Q_t_16 : pus_Q_t_16;  /* total_pus_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + pus_Q_t_17 : pus_Q_t_17;  /* total_pus_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + pus_Q_t_19 : pus_Q_t_19;  /* total_pus_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + pus_M_ta_t_3 : pus_M_ta_t_3;  /* total_pus_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + pus_M_ta_t_4 : pus_M_ta_t_4;  /* total_pus_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + pus_M_ta_t_5 : pus_M_ta_t_5;  /* total_pus_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + pus_M_ta_t_6 : pus_M_ta_t_6;  /* total_pus_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + pus_M_ta_t_8 : pus_M_ta_t_8;  /* total_pus_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + pus_M_ta_t_9 : pus_M_ta_t_9;  /* total_pus_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + pus_M_ta_t_10 : pus_M_ta_t_10;  /* total_pus_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + pus_M_ta_t_11 : pus_M_ta_t_11;  /* total_pus_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + pus_M_ta_t_12 : pus_M_ta_t_12;  /* total_pus_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + pus_M_aa_t : pus_M_aa_t;  /* total_pus_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + pus_M_aa_t_2 : pus_M_aa_t_2;  /* total_pus_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + pus_M_aa_t_3 : pus_M_aa_t_3;  /* total_pus_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + pus_M_aa_t_4 : pus_M_aa_t_4;  /* total_pus_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + pus_M_aa_t_5 : pus_M_aa_t_5;  /* total_pus_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + pus_M_aa_t_6 : pus_M_aa_t_6;  /* total_pus_zz_3 */
-        const real pus_size_t = m->pus_size_t[i];
+        const real pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z;
+        const real pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y + pus_M_ta_t_8*pus_q_z;
+        const real pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z;
+        const real pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x;
+        const real pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x;
+        const real pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + pus_Q_xx : pus_Q_xx;  /* M_tt_pus_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + pus_Q_xy : pus_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + pus_Q_xz : pus_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + pus_Q_yy : pus_Q_yy;  /* M_tt_pus_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + pus_Q_yz : pus_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + pus_Q_zz : pus_Q_zz;  /* M_tt_pus_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + pus_M_ta_t_3 : pus_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + pus_M_ta_t_4 : pus_M_ta_t_4;  /* M_ta_pus_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + pus_M_ta_t_5 : pus_M_ta_t_5;  /* M_ta_pus_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + pus_M_ta_t_6 : pus_M_ta_t_6;  /* M_ta_pus_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + pus_M_ta_t_8 : pus_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + pus_M_ta_t_9 : pus_M_ta_t_9;  /* M_ta_pus_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + pus_M_ta_t_10 : pus_M_ta_t_10;  /* M_ta_pus_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + pus_M_ta_t_11 : pus_M_ta_t_11;  /* M_ta_pus_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + pus_M_ta_t_12 : pus_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + pus_M_aa_t : pus_M_aa_t;  /* M_aa_pus_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + pus_M_aa_t_2 : pus_M_aa_t_2;  /* M_aa_pus_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + pus_M_aa_t_3 : pus_M_aa_t_3;  /* M_aa_pus_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + pus_M_aa_t_4 : pus_M_aa_t_4;  /* M_aa_pus_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + pus_M_aa_t_5 : pus_M_aa_t_5;  /* M_aa_pus_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + pus_M_aa_t_6 : pus_M_aa_t_6;  /* M_aa_pus_zz */
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[0*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
-            TOLERANCE*1);
+        o[0*count + k] = UNLESS(pus_J_3_t_6 >= 0);
+        o[1*count + k] = UNLESS(magnitude(pus_J_3_t_9) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -2356,81 +2401,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_pus_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_pus_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_pus_xx;
-        const real total_pus_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_pus_yy;
-        const real total_pus_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_pus_zz;
+        const real M_tt_xx = M_tt_pus_xx + m_star;
+        const real M_tt_pus_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_pus_yy + m_star;
+        const real M_tt_pus_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_pus_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_pus_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_pus_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_pus_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_pus_xz_2 - h_star_in_base_y;
-        const real total_pus_yx = sums[9*w + k];
-        const real M_ta_yx = total_pus_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_pus_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_pus_yz_2;
-        const real total_pus_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_pus_zx;
-        const real total_pus_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_pus_zy;
+        const real M_ta_pus_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_pus_xy + h_star_z;
+        const real M_ta_pus_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_pus_xz - h_star_y;
+        const real M_ta_pus_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_pus_yx - h_star_z;
+        const real M_ta_pus_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_pus_yz + h_star_x;
+        const real M_ta_pus_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_pus_zx + h_star_y;
+        const real M_ta_pus_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_pus_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_pus_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_pus_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_pus_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_pus_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_pus_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_pus_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_pus_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_pus_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_pus_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_pus_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_pus_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_pus_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_pus_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_pus_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_pus_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_pus_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_pus_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_pus_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_pus_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_pus_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_pus_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_pus_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_pus_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_pus_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_pus_xy = sums[1*w + k];
-        M[1*w + k] = -total_pus_xy;
-        M[6*w + k] = -total_pus_xy;
-        const real total_pus_xz = sums[2*w + k];
-        M[2*w + k] = -total_pus_xz;
-        M[12*w + k] = -total_pus_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_pus_yz = sums[4*w + k];
-        M[8*w + k] = -total_pus_yz;
-        M[13*w + k] = -total_pus_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_pus_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_pus_xx_2;
-        M[18*w + k] = total_pus_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_pus_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_pus_yy_2;
-        M[25*w + k] = -total_pus_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_pus_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_pus_zz_2;
-        M[32*w + k] = -total_pus_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2440,10 +2488,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_pus_xy) + (total_pus_xz + (M_tt_yy + total_pus_yz))) +
-            ((M_tt_zz + total_pus_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_pus_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_pus_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2526,16 +2574,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2546,30 +2597,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2591,9 +2651,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2611,236 +2671,248 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-x_2) from the origin of joint 2 to the connection point */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
+            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
         /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
-        const real inv_pus_v_2_t = 1/pus_v_2_t;
-        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
+            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
         /* (pus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
         const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
         const real t_dot_x = s[12*w + j];
         const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
+        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+        /* (pus-qd_1) rate of joint 1 */
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
+        const real pus_qd_1_t = pus_c_2_t*pus_s_3;
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_qd_1_t - pus_base_frame_xz*pus_c_3_t;
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_qd_1_t - pus_base_frame_yz*pus_c_3_t;
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_qd_1_t - pus_base_frame_zz*pus_c_3_t;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
+        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
             axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
-        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_qd_1*pus_w_1_t;
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
-        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1);
+        /* (pus-qd_2) rate of joint 2 */
+        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
+            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+        const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
         /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_t = pus_qd_2*pus_s_3;
-        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
-        /* (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3;
-        const real pus_zeta_3_y = pus_omega_2_t*pus_qd_3;
+        const real pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3;
+        const real pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2;
+        /* (pus-W_3) centripetal tensor of link 3 */
+        const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
+        const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
+        const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
         /* (pus-u_1) centripetal acceleration of the connection point */
         const real pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
         const real pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
         const real pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
-        /* (pus-W_3) centripetal tensor of link 3 */
-        const real pus_W_3_t = pus_omega_2_t*pus_omega_2_t;
-        const real pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2;
-        const real pus_W_3_t_3 = pus_qd_3*pus_qd_3;
-        const real pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2;
+        const real pus_u_1_in_axes3_x = axis_x_pus_axes3_x*pus_u_1_x +
+            axis_x_pus_axes3_y*pus_u_1_y + axis_x_pus_axes3_z*pus_u_1_z;
+        const real pus_u_1_in_axes3_y = axis_y_pus_axes3_x*pus_u_1_x +
+            axis_y_pus_axes3_y*pus_u_1_y + axis_y_pus_axes3_z*pus_u_1_z;
+        const real pus_u_1_in_axes3_z = axis_z_pus_axes3_x*pus_u_1_x +
+            axis_z_pus_axes3_y*pus_u_1_y + axis_z_pus_axes3_z*pus_u_1_z;
         /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
-        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
-            pus_platform_joint_offset_x*pus_zeta_3_y;
-        /* (pus-u_1) centripetal acceleration of the connection point */
-        const real pus_u_1_tip_x = axis_x_pus_axes3_x*pus_u_1_x + axis_x_pus_axes3_y*pus_u_1_y +
-            axis_x_pus_axes3_z*pus_u_1_z;
-        const real pus_u_1_tip_y = axis_y_pus_axes3_in_base_x*pus_u_1_x +
-            axis_y_pus_axes3_in_base_y*pus_u_1_y + axis_y_pus_axes3_in_base_z*pus_u_1_z;
-        const real pus_u_1_tip_z = axis_z_pus_axes3_in_base_x*pus_u_1_x +
-            axis_z_pus_axes3_in_base_y*pus_u_1_y + axis_z_pus_axes3_in_base_z*pus_u_1_z;
+        const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
+            pus_omega_2_in_axes3_x*pus_qd_3_t;
         /* (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real pus_rel_o_x = pus_u_1_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t;
-        const real pus_rel_o_y = pus_u_1_tip_y + pus_bias_t*pus_omega_2_t;
-        const real pus_rel_o_z = pus_u_1_tip_z - pus_bias_z;
+        const real pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
+        const real pus_rel_o_in_axes3_x = pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t
+            + pus_qd_3*pus_qd_3_t;
+        const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t;
+        const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z;
+        /* (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x;
+        /* (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
+            pus_c_2_t*pus_qdd_1_o);
         /* (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real pus_qdd_1_o = inv_pus_w_2_t*pus_rel_o_x;
-        const real pus_qdd_3_o = inv_pus_platform_joint_offset_x*(pus_qdd_1_o*pus_w_1_t -
-            pus_rel_o_y);
-        const real pus_qdd_2_o = inv_pus_v_2_t*(pus_c_2*pus_qdd_1_o - pus_rel_o_z);
+        const real pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o -
+            pus_rel_o_in_axes3_y);
         /* (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real pus_alpha_2_o_t = pus_qdd_2_o*pus_s_3;
-        const real pus_alpha_2_o_t_2 = pus_c_3*pus_qdd_2_o;
+        const real pus_alpha_2_o_t = pus_qdd_2_o_t*pus_s_3;
+        const real pus_alpha_2_o_in_axes3_y = pus_c_3_t*pus_qdd_2_o_t;
         /* (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real pus_alpha_3_o_x = -pus_alpha_2_o_t - pus_zeta_3_x;
-        const real pus_alpha_3_o_y = pus_alpha_2_o_t_2 - pus_zeta_3_y;
+        const real pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
+        const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz;
         /* (pus-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real pus_B_3_o_xy = pus_qdd_3_o - pus_W_3_xy;
-        const real pus_B_3_o_yx = -pus_W_3_xy - pus_qdd_3_o;
-        const real pus_B_3_o_zx = pus_zeta_3_y - pus_alpha_3_o_y;
-        const real pus_B_3_o_zy = pus_alpha_3_o_x - pus_zeta_3_x;
-        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real pus_g_r0_x = m->pus_g_r0_x[i];
-        const real pus_g_r0_y = m->pus_g_r0_y[i];
-        const real pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y;
-        const real pus_g_r0_z = m->pus_g_r0_z[i];
-        const real pus_acc_3_o_x = pus_u_1_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3;
-        const real pus_acc_3_o_y = pus_u_1_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3;
-        const real pus_acc_3_o_z = pus_u_1_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2;
-        /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real pus_J_3_xy = m->pus_J_3_xy[i];
-        const real pus_J_3_xz = m->pus_J_3_xz[i];
-        const real pus_J_3_yz = m->pus_J_3_yz[i];
-        const real pus_Sigma_3_yy = m->pus_Sigma_3_yy[i];
-        const real pus_Sigma_3_zz = m->pus_Sigma_3_zz[i];
-        const real pus_h_3_y = m->pus_h_3_y[i];
-        const real pus_h_3_z = m->pus_h_3_z[i];
-        const real pus_mu_3_o_x = pus_B_3_o_yx*pus_J_3_xy + pus_B_3_o_zx*pus_J_3_xz +
-            pus_B_3_o_zy*pus_Sigma_3_yy - pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) -
-            pus_Sigma_3_zz*pus_alpha_2_o_t - pus_acc_3_o_y*pus_h_3_y - pus_acc_3_o_z*pus_h_3_z;
-        const real pus_Sigma_3_xx = m->pus_Sigma_3_xx[i];
-        const real pus_h_3_x = m->pus_h_3_x[i];
-        const real pus_mu_3_o_y = pus_B_3_o_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_o_t_2 +
-            pus_acc_3_o_x*pus_h_3_y - pus_B_3_o_zx*pus_Sigma_3_xx - pus_B_3_o_zy*pus_J_3_xz -
-            pus_J_3_xy*(pus_W_3_t - pus_W_3_t_3) - pus_acc_3_o_z*pus_h_3_x;
-        const real pus_mu_3_o_z = pus_B_3_o_yx*pus_Sigma_3_xx + pus_acc_3_o_x*pus_h_3_z +
-            pus_acc_3_o_y*pus_h_3_x - pus_B_3_o_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_o_t -
-            pus_J_3_xz*(pus_W_3_t - pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_o_t_2;
+        const real pus_B_3_o_in_axes3_xy = pus_W_3_in_axes3_xy - pus_qdd_3_o;
+        const real pus_B_3_o_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3_o;
+        const real pus_B_3_o_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y;
+        const real pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x;
         /* (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
-        const real pus_acc_1_o_x = -pus_g_r0_x - pus_qdd_1_o;
+        const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
+        const real pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x;
+        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
+        const real pus_acc_3_o_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2;
+        const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
+        const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x + pus_acc_3_o_t*pus_c_3_t -
+            pus_g_in_axes0_z*pus_s_3;
+        const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y + pus_acc_3_o_t*pus_s_3 +
+            pus_c_3_t*pus_g_in_axes0_z;
+        const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x -
+            pus_g_in_axes0_y*pus_s_2;
+        /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
+        const real pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
+        const real pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
+        const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
+        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
+        const real pus_Sigma_3_in_axes3_yy = m->pus_Sigma_3_in_axes3_yy[i];
+        const real pus_Sigma_3_in_axes3_zz = m->pus_Sigma_3_in_axes3_zz[i];
+        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
+        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+        const real pus_mu_3_o_in_axes3_x = pus_B_3_o_in_axes3_yx*pus_J_3_in_spec3_xy +
+            pus_B_3_o_in_axes3_zx*pus_J_3_in_spec3_xz +
+            pus_B_3_o_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_o_t_2 -
+            pus_mu_3_o_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_t -
+            pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_z;
+        const real pus_Sigma_3_in_axes3_xx = m->pus_Sigma_3_in_axes3_xx[i];
+        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+        const real pus_mu_3_o_in_axes3_y = pus_B_3_o_in_axes3_xy*pus_J_3_in_spec3_yz +
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_in_axes3_y +
+            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_y -
+            pus_B_3_o_in_axes3_zx*pus_Sigma_3_in_axes3_xx -
+            pus_B_3_o_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_o_t -
+            pus_mu_3_o_t_3) - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_x;
+        const real pus_mu_3_o_in_axes3_z = pus_B_3_o_in_axes3_yx*pus_Sigma_3_in_axes3_xx +
+            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_z + pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_x
+            - pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t
+            - pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
+            pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y;
         /* (pus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real pus_G_o_t = inv_pus_v_2_t*(pus_mu_3_o_x*pus_s_3 - pus_c_3*pus_mu_3_o_y);
-        const real pus_G_o_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_o_z;
+        const real pus_G_o_in_axes3_z = pus_w_2_in_axes3_z*(pus_mu_3_o_in_axes3_x*pus_s_3 -
+            pus_c_3_t*pus_mu_3_o_in_axes3_y);
+        const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y;
         /* (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_c_o_x = inv_pus_w_2_t*(pus_G_o_t*pus_c_2 + pus_G_o_t_2*pus_w_1_t +
-            pus_acc_1_o_x*pus_link1_mass) + pus_B_3_o_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 +
-            pus_W_3_t_3) - pus_alpha_2_o_t_2*pus_h_3_y;
-        const real pus_c_o_y = -pus_G_o_t_2 - pus_B_3_o_yx*pus_h_3_x - pus_alpha_2_o_t*pus_h_3_y -
-            pus_h_3_z*(pus_W_3_t + pus_W_3_t_3);
-        const real pus_c_o_z = pus_B_3_o_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) -
-            pus_G_o_t - pus_B_3_o_zx*pus_h_3_x;
+        const real pus_c_o_in_axes3_x = pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 + pus_mu_3_o_t_3) -
+            pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_w_1_in_axes3_x*(pus_G_o_in_axes3_z*pus_c_2_t +
+            pus_acc_1_o_in_axes0_x*pus_link1_mass - pus_G_o_in_axes3_y*pus_e_1_in_axes3_y);
+        const real pus_c_o_in_axes3_y = -pus_G_o_in_axes3_y -
+            pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x - pus_alpha_2_o_t*pus_h_3_in_spec3_y -
+            pus_h_3_in_spec3_z*(pus_mu_3_o_t + pus_mu_3_o_t_3);
+        const real pus_c_o_in_axes3_z = pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_y*(pus_mu_3_o_t + pus_mu_3_o_t_2) - pus_G_o_in_axes3_z -
+            pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x;
         /* (pus-U) velocity and gravity terms of the leg force */
-        const real pus_U_in_base_x = -axis_x_pus_axes3_x*pus_c_o_x -
-            axis_y_pus_axes3_in_base_x*pus_c_o_y - axis_z_pus_axes3_in_base_x*pus_c_o_z;
-        const real pus_U_in_base_y = -axis_x_pus_axes3_y*pus_c_o_x -
-            axis_y_pus_axes3_in_base_y*pus_c_o_y - axis_z_pus_axes3_in_base_y*pus_c_o_z;
-        const real pus_U_in_base_z = -axis_x_pus_axes3_z*pus_c_o_x -
-            axis_y_pus_axes3_in_base_z*pus_c_o_y - axis_z_pus_axes3_in_base_z*pus_c_o_z;
+        const real pus_U_x = -axis_x_pus_axes3_x*pus_c_o_in_axes3_x -
+            axis_y_pus_axes3_x*pus_c_o_in_axes3_y - axis_z_pus_axes3_x*pus_c_o_in_axes3_z;
+        const real pus_U_y = -axis_x_pus_axes3_y*pus_c_o_in_axes3_x -
+            axis_y_pus_axes3_y*pus_c_o_in_axes3_y - axis_z_pus_axes3_y*pus_c_o_in_axes3_z;
+        const real pus_U_z = -axis_x_pus_axes3_z*pus_c_o_in_axes3_x -
+            axis_y_pus_axes3_z*pus_c_o_in_axes3_y - axis_z_pus_axes3_z*pus_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real pus_Z_a_t = pus_U_in_base_z*pus_q_in_base_y - pus_U_in_base_y*pus_q_in_base_z;
-        const real pus_Z_a_t_2 = pus_U_in_base_x*pus_q_in_base_z -
-            pus_U_in_base_z*pus_q_in_base_x;
-        const real pus_Z_a_t_3 = pus_U_in_base_y*pus_q_in_base_x -
-            pus_U_in_base_x*pus_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + pus_U_in_base_x : pus_U_in_base_x;  /* total_pus_x */
-        terms[1*count + k] = add ? terms[1*count + k] + pus_U_in_base_y : pus_U_in_base_y;  /* total_pus_y */
-        terms[2*count + k] = add ? terms[2*count + k] + pus_U_in_base_z : pus_U_in_base_z;  /* total_pus_z */
-        terms[3*count + k] = add ? terms[3*count + k] + pus_Z_a_t : pus_Z_a_t;  /* total_pus_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + pus_Z_a_t_2 : pus_Z_a_t_2;  /* total_pus_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + pus_Z_a_t_3 : pus_Z_a_t_3;  /* total_pus_z_2 */
-        const real pus_size_t = m->pus_size_t[i];
+        const real pus_Z_a_t = pus_U_z*pus_q_y - pus_U_y*pus_q_z;
+        const real pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x;
+        const real pus_Z_a_t_3 = pus_U_y*pus_q_x - pus_U_x*pus_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + pus_U_x : pus_U_x;  /* Z_t_pus_x */
+        terms[1*count + k] = add ? terms[1*count + k] + pus_U_y : pus_U_y;  /* Z_t_pus_y */
+        terms[2*count + k] = add ? terms[2*count + k] + pus_U_z : pus_U_z;  /* Z_t_pus_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + pus_Z_a_t : pus_Z_a_t;  /* Z_a_pus_x */
+        terms[4*count + k] = add ? terms[4*count + k] + pus_Z_a_t_2 : pus_Z_a_t_2;  /* Z_a_pus_y */
+        terms[5*count + k] = add ? terms[5*count + k] + pus_Z_a_t_3 : pus_Z_a_t_3;  /* Z_a_pus_z */
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
         o[0*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
-            TOLERANCE*1);
+        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -2857,27 +2929,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_pus_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_pus_x;
+        const real Z_t_pus_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_pus_x;
         const real Z_p_y = s[19*w + k];
-        const real total_pus_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_pus_y;
+        const real Z_t_pus_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_pus_y;
         const real Z_p_z = s[20*w + k];
-        const real total_pus_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_pus_z;
+        const real Z_t_pus_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_pus_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_pus_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_pus_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_pus_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_pus_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_pus_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_pus_z_2;
+        const real Z_a_pus_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_pus_x + Z_q_x;
+        const real Z_a_pus_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_pus_y + Z_q_y;
+        const real Z_a_pus_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_pus_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -2978,111 +3052,103 @@ INLINE void H_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-x_2) from the origin of joint 2 to the connection point */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
+            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
         /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
+            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
         /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
-        const real inv_pus_w_2_t = 1/pus_w_2_t;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real pus_w_1_t_3 =
-            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y);
-        const real pus_w_1_t_4 =
-            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z);
-        const real pus_w_1_t_5 =
-            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x);
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
+        const real pus_w_1_t = pus_c_2_t*pus_s_3;
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3_t;
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3_t;
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3_t;
+        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
+        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+        const real pus_w_1_x = pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y);
+        const real pus_w_1_y = pus_w_1_in_axes3_x*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z);
+        const real pus_w_1_z = pus_w_1_in_axes3_x*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x);
         /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        const real pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5;
-        const real pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3;
-        const real pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4;
-        o[0*count + k] = -pus_w_1_t_3;
-        o[1*count + k] = -pus_w_1_t_4;
-        o[2*count + k] = -pus_w_1_t_5;
+        const real pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y;
+        const real pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z;
+        const real pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x;
+        /* (pus-w_1) reciprocal vector 1 */
+        o[0*count + k] = pus_w_1_x;
+        o[1*count + k] = pus_w_1_y;
+        o[2*count + k] = pus_w_1_z;
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = pus_H_a_1_x;
         o[4*count + k] = pus_H_a_1_y;
         o[5*count + k] = pus_H_a_1_z;
-        o[8*count + k] = (pus_w_1_t_3 + (pus_w_1_t_4 + pus_w_1_t_5)) + (pus_H_a_1_x + (pus_H_a_1_y
-            + pus_H_a_1_z));
-        const real pus_size_t = m->pus_size_t[i];
+        o[8*count + k] = (pus_w_1_x + (pus_w_1_y + pus_w_1_z)) + (pus_H_a_1_x + (pus_H_a_1_y +
+            pus_H_a_1_z));
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         o[6*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(-pus_w_2_t) > TOLERANCE*1);
+        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -3187,33 +3253,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3221,31 +3274,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3273,9 +3352,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3293,256 +3372,265 @@ INLINE void required_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-x_2) from the origin of joint 2 to the connection point */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
+            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
         /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
-        const real inv_pus_v_2_t = 1/pus_v_2_t;
-        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
+            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
         /* (pus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
         const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
         const real t_dot_x = s[12*w + j];
         const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
-            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
-        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_qd_1*pus_w_1_t;
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
-        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1);
-        /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_t = pus_qd_2*pus_s_3;
-        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
-        /* (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3;
-        const real pus_zeta_3_y = pus_omega_2_t*pus_qd_3;
-        /* (pus-W_3) centripetal tensor of link 3 */
-        const real pus_W_3_t = pus_omega_2_t*pus_omega_2_t;
-        const real pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2;
-        const real pus_W_3_t_3 = pus_qd_3*pus_qd_3;
-        const real pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2;
-        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
-        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
-            pus_platform_joint_offset_x*pus_zeta_3_y;
-        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real pus_g_r0_x = m->pus_g_r0_x[i];
-        const real pus_g_r0_y = m->pus_g_r0_y[i];
-        const real pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y;
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
         /* (pus-w_1) reciprocal vector 1 */
-        const real pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t;
-        const real pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t;
-        const real pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t;
-        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        const real pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5;
-        const real pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3;
-        const real pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4;
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
+        const real pus_w_1_t = pus_c_2_t*pus_s_3;
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3_t;
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3_t;
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3_t;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
+        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
+        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+        const real pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x;
+        const real pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x;
+        const real pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+        /* (pus-qd_1) rate of joint 1 */
+        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
+            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        /* (pus-qd_2) rate of joint 2 */
+        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
+            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+        const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
+        /* (pus-omega_2) angular velocity of link 2 */
+        const real pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3;
+        const real pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2;
+        /* (pus-W_3) centripetal tensor of link 3 */
+        const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
+        const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
+        const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
         /* (pus-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y;
+        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z;
+        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x;
+        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x;
         /* (pus-S_ddot) acceleration of the connection point */
         const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
         const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
         const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
-        const real pus_S_ddot_tip_x = axis_x_pus_axes3_x*pus_S_ddot_x +
+        const real pus_S_ddot_in_axes3_x = axis_x_pus_axes3_x*pus_S_ddot_x +
             axis_x_pus_axes3_y*pus_S_ddot_y + axis_x_pus_axes3_z*pus_S_ddot_z;
-        const real pus_S_ddot_tip_y = axis_y_pus_axes3_in_base_x*pus_S_ddot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_ddot_y + axis_y_pus_axes3_in_base_z*pus_S_ddot_z;
-        const real pus_S_ddot_tip_z = axis_z_pus_axes3_in_base_x*pus_S_ddot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_ddot_y + axis_z_pus_axes3_in_base_z*pus_S_ddot_z;
+        const real pus_S_ddot_in_axes3_y = axis_y_pus_axes3_x*pus_S_ddot_x +
+            axis_y_pus_axes3_y*pus_S_ddot_y + axis_y_pus_axes3_z*pus_S_ddot_z;
+        const real pus_S_ddot_in_axes3_z = axis_z_pus_axes3_x*pus_S_ddot_x +
+            axis_z_pus_axes3_y*pus_S_ddot_y + axis_z_pus_axes3_z*pus_S_ddot_z;
+        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
+            pus_omega_2_in_axes3_x*pus_qd_3_t;
         /* (pus-rel) acceleration of the connection point left to the joint accelerations */
-        const real pus_rel_x = pus_S_ddot_tip_x + pus_bias_t*pus_omega_2_t_2 +
+        const real pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
+        const real pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t +
             pus_qd_3*pus_qd_3_t;
-        const real pus_rel_y = pus_S_ddot_tip_y + pus_bias_t*pus_omega_2_t;
-        const real pus_rel_z = pus_S_ddot_tip_z - pus_bias_z;
+        const real pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t;
+        const real pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z;
         /* (pus-qdd_1) acceleration of joint 1 */
-        const real pus_qdd_1 = inv_pus_w_2_t*pus_rel_x;
-        const real pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y);
-        const real pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z);
-        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real pus_g_r0_z = m->pus_g_r0_z[i];
-        const real pus_acc_3_x = pus_S_ddot_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3;
-        const real pus_acc_3_y = pus_S_ddot_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3;
-        const real pus_acc_3_z = pus_S_ddot_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2;
+        const real pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x;
+        /* (pus-qdd_2) acceleration of joint 2 */
+        const real pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1);
+        /* (pus-qdd_3) acceleration of joint 3 */
+        const real pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 -
+            pus_rel_in_axes3_y);
         /* (pus-alpha_2) angular acceleration of link 2 */
-        const real pus_alpha_2_t = pus_qdd_2*pus_s_3;
-        const real pus_alpha_2_t_2 = pus_c_3*pus_qdd_2;
+        const real pus_alpha_2_t = pus_qdd_2_t*pus_s_3;
+        const real pus_alpha_2_in_axes3_y = pus_c_3_t*pus_qdd_2_t;
         /* (pus-alpha_3) angular acceleration of link 3 */
-        const real pus_alpha_3_x = -pus_alpha_2_t - pus_zeta_3_x;
-        const real pus_alpha_3_y = pus_alpha_2_t_2 - pus_zeta_3_y;
+        const real pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t;
+        const real pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz;
         /* (pus-B_3) acceleration tensor of link 3 */
-        const real pus_B_3_xy = pus_qdd_3 - pus_W_3_xy;
-        const real pus_B_3_yx = -pus_W_3_xy - pus_qdd_3;
-        const real pus_B_3_zx = pus_zeta_3_y - pus_alpha_3_y;
-        const real pus_B_3_zy = pus_alpha_3_x - pus_zeta_3_x;
-        /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real pus_J_3_xy = m->pus_J_3_xy[i];
-        const real pus_J_3_xz = m->pus_J_3_xz[i];
-        const real pus_J_3_yz = m->pus_J_3_yz[i];
-        const real pus_Sigma_3_yy = m->pus_Sigma_3_yy[i];
-        const real pus_Sigma_3_zz = m->pus_Sigma_3_zz[i];
-        const real pus_h_3_y = m->pus_h_3_y[i];
-        const real pus_h_3_z = m->pus_h_3_z[i];
-        const real pus_mu_3_x = pus_B_3_yx*pus_J_3_xy + pus_B_3_zx*pus_J_3_xz +
-            pus_B_3_zy*pus_Sigma_3_yy - pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) -
-            pus_Sigma_3_zz*pus_alpha_2_t - pus_acc_3_y*pus_h_3_y - pus_acc_3_z*pus_h_3_z;
-        const real pus_Sigma_3_xx = m->pus_Sigma_3_xx[i];
-        const real pus_h_3_x = m->pus_h_3_x[i];
-        const real pus_mu_3_y = pus_B_3_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_t_2 +
-            pus_acc_3_x*pus_h_3_y - pus_B_3_zx*pus_Sigma_3_xx - pus_B_3_zy*pus_J_3_xz -
-            pus_J_3_xy*(pus_W_3_t - pus_W_3_t_3) - pus_acc_3_z*pus_h_3_x;
-        const real pus_mu_3_z = pus_B_3_yx*pus_Sigma_3_xx + pus_acc_3_x*pus_h_3_z +
-            pus_acc_3_y*pus_h_3_x - pus_B_3_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_t -
-            pus_J_3_xz*(pus_W_3_t - pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_t_2;
+        const real pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t;
+        const real pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t;
+        const real pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y;
+        const real pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x;
         /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real pus_acc_1_x = -pus_g_r0_x - pus_qdd_1;
+        const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
+        const real pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x;
+        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
+        const real pus_acc_3_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2;
+        const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
+        const real pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x + pus_acc_3_t*pus_c_3_t -
+            pus_g_in_axes0_z*pus_s_3;
+        const real pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y + pus_acc_3_t*pus_s_3 +
+            pus_c_3_t*pus_g_in_axes0_z;
+        const real pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x -
+            pus_g_in_axes0_y*pus_s_2;
+        /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
+        const real pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
+        const real pus_mu_3_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
+        const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
+        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
+        const real pus_Sigma_3_in_axes3_yy = m->pus_Sigma_3_in_axes3_yy[i];
+        const real pus_Sigma_3_in_axes3_zz = m->pus_Sigma_3_in_axes3_zz[i];
+        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
+        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+        const real pus_mu_3_in_axes3_x = pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy +
+            pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz + pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy
+            - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3) -
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_t - pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z;
+        const real pus_Sigma_3_in_axes3_xx = m->pus_Sigma_3_in_axes3_xx[i];
+        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+        const real pus_mu_3_in_axes3_y = pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz +
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
+            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
+            - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
+            pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x;
+        const real pus_mu_3_in_axes3_z = pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx +
+            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z + pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x -
+            pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_t -
+            pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2) -
+            pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y;
         /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real pus_G_t = inv_pus_v_2_t*(pus_mu_3_x*pus_s_3 - pus_c_3*pus_mu_3_y);
-        const real pus_G_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_z;
+        const real pus_G_in_axes3_z = pus_w_2_in_axes3_z*(pus_mu_3_in_axes3_x*pus_s_3 -
+            pus_c_3_t*pus_mu_3_in_axes3_y);
+        const real pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y;
         /* (pus-c) leg force on the platform without actuation and without the mass at the connection
            point */
         const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_c_x = inv_pus_w_2_t*(pus_G_t*pus_c_2 + pus_G_t_2*pus_w_1_t +
-            pus_acc_1_x*pus_link1_mass) + pus_B_3_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 +
-            pus_W_3_t_3) - pus_alpha_2_t_2*pus_h_3_y;
-        const real pus_c_y = -pus_G_t_2 - pus_B_3_yx*pus_h_3_x - pus_alpha_2_t*pus_h_3_y -
-            pus_h_3_z*(pus_W_3_t + pus_W_3_t_3);
-        const real pus_c_z = pus_B_3_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_t
-            - pus_B_3_zx*pus_h_3_x;
-        const real pus_c_in_base_x = axis_x_pus_axes3_x*pus_c_x +
-            axis_y_pus_axes3_in_base_x*pus_c_y + axis_z_pus_axes3_in_base_x*pus_c_z;
-        const real pus_c_in_base_y = axis_x_pus_axes3_y*pus_c_x +
-            axis_y_pus_axes3_in_base_y*pus_c_y + axis_z_pus_axes3_in_base_y*pus_c_z;
-        const real pus_c_in_base_z = axis_x_pus_axes3_z*pus_c_x +
-            axis_y_pus_axes3_in_base_z*pus_c_y + axis_z_pus_axes3_in_base_z*pus_c_z;
+        const real pus_c_in_axes3_x = pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3) -
+            pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_w_1_in_axes3_x*(pus_G_in_axes3_z*pus_c_2_t + pus_acc_1_in_axes0_x*pus_link1_mass -
+            pus_G_in_axes3_y*pus_e_1_in_axes3_y);
+        const real pus_c_in_axes3_y = -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3);
+        const real pus_c_in_axes3_z = pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) - pus_G_in_axes3_z -
+            pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x;
+        const real pus_c_x = axis_x_pus_axes3_x*pus_c_in_axes3_x +
+            axis_y_pus_axes3_x*pus_c_in_axes3_y + axis_z_pus_axes3_x*pus_c_in_axes3_z;
+        const real pus_c_y = axis_x_pus_axes3_y*pus_c_in_axes3_x +
+            axis_y_pus_axes3_y*pus_c_in_axes3_y + axis_z_pus_axes3_y*pus_c_in_axes3_z;
+        const real pus_c_z = axis_x_pus_axes3_z*pus_c_in_axes3_x +
+            axis_y_pus_axes3_z*pus_c_in_axes3_y + axis_z_pus_axes3_z*pus_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real pus_R_a_t = pus_c_in_base_z*pus_q_in_base_y - pus_c_in_base_y*pus_q_in_base_z;
-        const real pus_R_a_t_2 = pus_c_in_base_x*pus_q_in_base_z -
-            pus_c_in_base_z*pus_q_in_base_x;
-        const real pus_R_a_t_3 = pus_c_in_base_y*pus_q_in_base_x -
-            pus_c_in_base_x*pus_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + pus_c_in_base_x : pus_c_in_base_x;  /* total_pus_x */
-        terms[1*count + k] = add ? terms[1*count + k] + pus_c_in_base_y : pus_c_in_base_y;  /* total_pus_y */
-        terms[2*count + k] = add ? terms[2*count + k] + pus_c_in_base_z : pus_c_in_base_z;  /* total_pus_z */
-        terms[3*count + k] = add ? terms[3*count + k] + pus_R_a_t : pus_R_a_t;  /* total_pus_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + pus_R_a_t_2 : pus_R_a_t_2;  /* total_pus_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + pus_R_a_t_3 : pus_R_a_t_3;  /* total_pus_z_2 */
-        o[0*count + k] = -pus_w_1_t_3;
-        o[1*count + k] = -pus_w_1_t_4;
-        o[2*count + k] = -pus_w_1_t_5;
+        const real pus_R_a_t = pus_c_y*pus_q_z - pus_c_z*pus_q_y;
+        const real pus_R_a_t_2 = pus_c_z*pus_q_x - pus_c_x*pus_q_z;
+        const real pus_R_a_t_3 = pus_c_x*pus_q_y - pus_c_y*pus_q_x;
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+        const real pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y;
+        const real pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z;
+        const real pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + pus_c_x : pus_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + pus_c_y : pus_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + pus_c_z : pus_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + pus_R_a_t : pus_R_a_t;  /* R_a_pus_x */
+        terms[4*count + k] = add ? terms[4*count + k] + pus_R_a_t_2 : pus_R_a_t_2;  /* R_a_pus_y */
+        terms[5*count + k] = add ? terms[5*count + k] + pus_R_a_t_3 : pus_R_a_t_3;  /* R_a_pus_z */
+        /* (pus-w_1) reciprocal vector 1 */
+        o[0*count + k] = pus_w_1_x;
+        o[1*count + k] = pus_w_1_y;
+        o[2*count + k] = pus_w_1_z;
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = pus_H_a_1_x;
         o[4*count + k] = pus_H_a_1_y;
         o[5*count + k] = pus_H_a_1_z;
-        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
         o[6*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
-            TOLERANCE*1);
+        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -3565,28 +3653,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_pus_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_pus_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_pus_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_pus_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_pus_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_pus_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_pus_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_pus_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_pus_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_pus_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_pus_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_pus_z_2;
+        const real R_a_pus_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_pus_x + mu_p_x;
+        const real R_a_pus_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_pus_y + mu_p_y;
+        const real R_a_pus_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_pus_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -3706,53 +3796,53 @@ INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t w, size_t leg,
         const real t_z = s[2*w + j];
         const real pus_S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        const real pus_q_1 = pus_px_1 + pus_q_1_t;
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = -pus_branch_1*root(pus_disc_1);
+        const real pus_q_1 = pus_S_in_axes0_x - pus_q_1_t;
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_q_1_t*pus_q_1_t;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
         /* (pus-q_2) displacement of joint 2 */
-        const real pus_q_2 = angle(inv_pus_rho2_2*pus_S_r0_y*pus_root_2,
-            -inv_pus_rho2_2*pus_q_1_t*pus_root_2);
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_q_2 = angle(inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2,
+            inv_pus_rho2_2*pus_q_1_t*pus_root_2);
         /* (pus-q_3) displacement of joint 3 */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_q_3 =
-            angle(-inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            angle(-inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
             pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz),
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2);
+            inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2);
+        /* (pus-q_1) displacement of joint 1 */
         o[0*count + k] = pus_q_1;
+        /* (pus-q_2) displacement of joint 2 */
         o[1*count + k] = pus_q_2;
+        /* (pus-q_3) displacement of joint 3 */
         o[2*count + k] = pus_q_3;
         o[5*count + k] = pus_q_1 + (pus_q_2 + pus_q_3);
-        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         o[3*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t);
+        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2);
     }
 }
 
@@ -3875,121 +3965,118 @@ INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t leg, size_t
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-x_2) from the origin of joint 2 to the connection point */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
+            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
         /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
+        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
+            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
         /* (pus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real pus_S_dot_x = t_dot_x + omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real pus_S_dot_x = t_dot_x + omega_y*pus_q_z - omega_z*pus_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real pus_S_dot_y = t_dot_y + omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
+        const real pus_S_dot_y = t_dot_y + omega_z*pus_q_x - omega_x*pus_q_z;
         const real t_dot_z = s[14*w + j];
-        const real pus_S_dot_z = t_dot_z + omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real pus_S_dot_z = t_dot_z + omega_x*pus_q_y - omega_y*pus_q_x;
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
+        /* (pus-qd_1) rate of joint 1 */
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
+        const real pus_qd_1_t = pus_c_2_t*pus_s_3;
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_qd_1_t - pus_base_frame_xz*pus_c_3_t;
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_qd_1_t - pus_base_frame_yz*pus_c_3_t;
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_qd_1_t - pus_base_frame_zz*pus_c_3_t;
+        const real pus_qd_1 = (pus_S_dot_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y) +
+            pus_S_dot_y*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z) +
+            pus_S_dot_z*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x))/pus_e_1_in_axes3_x;
+        /* (pus-qd_2) rate of joint 2 */
+        const real pus_qd_2 = (axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)/pus_v_2_in_axes3_z;
         /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_1 = (pus_S_dot_x*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z
-            - axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y) +
-            pus_S_dot_y*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z) +
-            pus_S_dot_z*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x))/pus_w_2_t;
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real pus_qd_3 =
-            inv_pus_platform_joint_offset_x*(axis_y_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_qd_1*pus_w_1_t);
-        const real pus_qd_2 = (axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1)/pus_v_2_t;
-        o[0*count + k] = -pus_qd_1;
+        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+        const real pus_qd_3 = pus_w_3_in_axes3_y*(axis_y_pus_axes3_x*pus_S_dot_x +
+            axis_y_pus_axes3_y*pus_S_dot_y + axis_y_pus_axes3_z*pus_S_dot_z -
+            pus_e_1_in_axes3_y*pus_qd_1);
+        /* (pus-qd_1) rate of joint 1 */
+        o[0*count + k] = pus_qd_1;
+        /* (pus-qd_2) rate of joint 2 */
         o[1*count + k] = pus_qd_2;
+        /* (pus-qd_3) rate of joint 3 */
         o[2*count + k] = pus_qd_3;
         o[5*count + k] = pus_qd_1 + (pus_qd_2 + pus_qd_3);
-        const real pus_size_t = m->pus_size_t[i];
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
         o[3*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
-            TOLERANCE*1);
+        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -4133,162 +4220,164 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t leg
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-x_2) from the origin of joint 2 to the connection point */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
+            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
         /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
-        const real inv_pus_v_2_t = 1/pus_v_2_t;
-        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
+            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
         /* (pus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
         const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
         const real t_dot_x = s[12*w + j];
         const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
+        /* (pus-w_1) reciprocal vector 1 */
+        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
+        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+        /* (pus-qd_1) rate of joint 1 */
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
+        const real pus_qd_1_t = pus_c_2_t*pus_s_3;
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_qd_1_t - pus_base_frame_xz*pus_c_3_t;
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_qd_1_t - pus_base_frame_yz*pus_c_3_t;
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_qd_1_t - pus_base_frame_zz*pus_c_3_t;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
+        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
             axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
-        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_qd_1*pus_w_1_t;
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
-        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1);
+        /* (pus-qd_2) rate of joint 2 */
+        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
+            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+        const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
         /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_t = pus_qd_2*pus_s_3;
-        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
-        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
-        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
-            pus_omega_2_t*pus_platform_joint_offset_x*pus_qd_3;
+        const real pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3;
+        const real pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2;
         /* (pus-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y;
+        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z;
+        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x;
+        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x;
         /* (pus-S_ddot) acceleration of the connection point */
         const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
         const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
         const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_bias_in_axes3_z = pus_omega_2_in_axes3_x*pus_qd_3_t +
+            pus_omega_2_in_axes3_x*pus_platform_joint_offset_x*pus_qd_3;
         /* (pus-rel) acceleration of the connection point left to the joint accelerations */
-        const real pus_rel_x = axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
-            axis_x_pus_axes3_z*pus_S_ddot_z + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t;
-        const real pus_rel_y = axis_y_pus_axes3_in_base_x*pus_S_ddot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_ddot_y + axis_y_pus_axes3_in_base_z*pus_S_ddot_z +
-            pus_bias_t*pus_omega_2_t;
-        const real pus_rel_z = axis_z_pus_axes3_in_base_x*pus_S_ddot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_ddot_y + axis_z_pus_axes3_in_base_z*pus_S_ddot_z -
-            pus_bias_z;
+        const real pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
+        const real pus_rel_in_axes3_x = axis_x_pus_axes3_x*pus_S_ddot_x +
+            axis_x_pus_axes3_y*pus_S_ddot_y + axis_x_pus_axes3_z*pus_S_ddot_z +
+            pus_omega_2_in_axes3_y*pus_rel_t + pus_qd_3*pus_qd_3_t;
+        const real pus_rel_in_axes3_y = axis_y_pus_axes3_x*pus_S_ddot_x +
+            axis_y_pus_axes3_y*pus_S_ddot_y + axis_y_pus_axes3_z*pus_S_ddot_z -
+            pus_omega_2_in_axes3_x*pus_rel_t;
+        const real pus_rel_in_axes3_z = axis_z_pus_axes3_x*pus_S_ddot_x +
+            axis_z_pus_axes3_y*pus_S_ddot_y + axis_z_pus_axes3_z*pus_S_ddot_z -
+            pus_bias_in_axes3_z;
         /* (pus-qdd_1) acceleration of joint 1 */
-        const real pus_qdd_1 = inv_pus_w_2_t*pus_rel_x;
-        const real pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y);
-        const real pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z);
-        o[0*count + k] = -pus_qdd_1;
-        o[1*count + k] = -pus_qdd_2;
-        o[2*count + k] = -pus_qdd_3;
-        o[5*count + k] = pus_qdd_1 + (pus_qdd_2 + pus_qdd_3);
-        const real pus_size_t = m->pus_size_t[i];
+        const real pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x;
+        /* (pus-qdd_2) acceleration of joint 2 */
+        const real pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1);
+        /* (pus-qdd_3) acceleration of joint 3 */
+        const real pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 -
+            pus_rel_in_axes3_y);
+        /* (pus-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = pus_qdd_1;
+        /* (pus-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = -pus_qdd_2_t;
+        /* (pus-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = -pus_qdd_3_t;
+        o[5*count + k] = pus_qdd_1 + (pus_qdd_2_t + pus_qdd_3_t);
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
         o[3*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
-            TOLERANCE*1);
+        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -4433,245 +4522,254 @@ INLINE void legs_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-x_2) from the origin of joint 2 to the connection point */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
+            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
         /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
-        const real inv_pus_v_2_t = 1/pus_v_2_t;
-        const real inv_pus_w_2_t = 1/pus_w_2_t;
+        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
+            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
         /* (pus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y;
+        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
         const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x;
+        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
+        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
         const real t_dot_x = s[12*w + j];
         const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_1 = inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x +
-            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
-        const real pus_qd_3_t = axis_y_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_qd_1*pus_w_1_t;
-        const real inv_pus_platform_joint_offset_x = m->inv_pus_platform_joint_offset_x[i];
-        const real pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t;
-        const real pus_qd_2 = inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1);
-        /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_t = pus_qd_2*pus_s_3;
-        const real pus_omega_2_t_2 = pus_c_3*pus_qd_2;
-        /* (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3;
-        const real pus_zeta_3_y = pus_omega_2_t*pus_qd_3;
-        /* (pus-W_3) centripetal tensor of link 3 */
-        const real pus_W_3_t = pus_omega_2_t*pus_omega_2_t;
-        const real pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2;
-        const real pus_W_3_t_3 = pus_qd_3*pus_qd_3;
-        const real pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2;
-        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-        const real pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x;
-        const real pus_bias_z = pus_omega_2_t*pus_qd_3_t +
-            pus_platform_joint_offset_x*pus_zeta_3_y;
-        /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real pus_g_r0_x = m->pus_g_r0_x[i];
-        const real pus_g_r0_y = m->pus_g_r0_y[i];
-        const real pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y;
+        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
         /* (pus-w_1) reciprocal vector 1 */
-        const real pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t;
-        const real pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t;
-        const real pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t;
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
+        const real pus_w_1_t = pus_c_2_t*pus_s_3;
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3_t;
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3_t;
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3_t;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
+        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
+        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+        const real pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x;
+        const real pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x;
+        const real pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x;
+        /* (pus-w_2) reciprocal vector 2 */
+        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+        /* (pus-qd_1) rate of joint 1 */
+        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
+            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        /* (pus-qd_2) rate of joint 2 */
+        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
+            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
+        /* (pus-qd_3) rate of joint 3 */
+        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+        const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
+        /* (pus-omega_2) angular velocity of link 2 */
+        const real pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3;
+        const real pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2;
+        /* (pus-W_3) centripetal tensor of link 3 */
+        const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
+        const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
+        const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
         /* (pus-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y;
+        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z;
+        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x;
+        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x;
         /* (pus-S_ddot) acceleration of the connection point */
         const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
         const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
         const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
-        const real pus_S_ddot_tip_x = axis_x_pus_axes3_x*pus_S_ddot_x +
+        const real pus_S_ddot_in_axes3_x = axis_x_pus_axes3_x*pus_S_ddot_x +
             axis_x_pus_axes3_y*pus_S_ddot_y + axis_x_pus_axes3_z*pus_S_ddot_z;
-        const real pus_S_ddot_tip_y = axis_y_pus_axes3_in_base_x*pus_S_ddot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_ddot_y + axis_y_pus_axes3_in_base_z*pus_S_ddot_z;
-        const real pus_S_ddot_tip_z = axis_z_pus_axes3_in_base_x*pus_S_ddot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_ddot_y + axis_z_pus_axes3_in_base_z*pus_S_ddot_z;
+        const real pus_S_ddot_in_axes3_y = axis_y_pus_axes3_x*pus_S_ddot_x +
+            axis_y_pus_axes3_y*pus_S_ddot_y + axis_y_pus_axes3_z*pus_S_ddot_z;
+        const real pus_S_ddot_in_axes3_z = axis_z_pus_axes3_x*pus_S_ddot_x +
+            axis_z_pus_axes3_y*pus_S_ddot_y + axis_z_pus_axes3_z*pus_S_ddot_z;
+        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
+            pus_omega_2_in_axes3_x*pus_qd_3_t;
         /* (pus-rel) acceleration of the connection point left to the joint accelerations */
-        const real pus_rel_x = pus_S_ddot_tip_x + pus_bias_t*pus_omega_2_t_2 +
+        const real pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
+        const real pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t +
             pus_qd_3*pus_qd_3_t;
-        const real pus_rel_y = pus_S_ddot_tip_y + pus_bias_t*pus_omega_2_t;
-        const real pus_rel_z = pus_S_ddot_tip_z - pus_bias_z;
+        const real pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t;
+        const real pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z;
         /* (pus-qdd_1) acceleration of joint 1 */
-        const real pus_qdd_1 = inv_pus_w_2_t*pus_rel_x;
-        const real pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y);
-        const real pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z);
-        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real pus_g_r0_z = m->pus_g_r0_z[i];
-        const real pus_acc_3_x = pus_S_ddot_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3;
-        const real pus_acc_3_y = pus_S_ddot_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3;
-        const real pus_acc_3_z = pus_S_ddot_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2;
+        const real pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x;
+        /* (pus-qdd_2) acceleration of joint 2 */
+        const real pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1);
+        /* (pus-qdd_3) acceleration of joint 3 */
+        const real pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 -
+            pus_rel_in_axes3_y);
         /* (pus-alpha_2) angular acceleration of link 2 */
-        const real pus_alpha_2_t = pus_qdd_2*pus_s_3;
-        const real pus_alpha_2_t_2 = pus_c_3*pus_qdd_2;
+        const real pus_alpha_2_t = pus_qdd_2_t*pus_s_3;
+        const real pus_alpha_2_in_axes3_y = pus_c_3_t*pus_qdd_2_t;
         /* (pus-alpha_3) angular acceleration of link 3 */
-        const real pus_alpha_3_x = -pus_alpha_2_t - pus_zeta_3_x;
-        const real pus_alpha_3_y = pus_alpha_2_t_2 - pus_zeta_3_y;
+        const real pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t;
+        const real pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz;
         /* (pus-B_3) acceleration tensor of link 3 */
-        const real pus_B_3_xy = pus_qdd_3 - pus_W_3_xy;
-        const real pus_B_3_yx = -pus_W_3_xy - pus_qdd_3;
-        const real pus_B_3_zx = pus_zeta_3_y - pus_alpha_3_y;
-        const real pus_B_3_zy = pus_alpha_3_x - pus_zeta_3_x;
-        /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real pus_J_3_xy = m->pus_J_3_xy[i];
-        const real pus_J_3_xz = m->pus_J_3_xz[i];
-        const real pus_J_3_yz = m->pus_J_3_yz[i];
-        const real pus_Sigma_3_yy = m->pus_Sigma_3_yy[i];
-        const real pus_Sigma_3_zz = m->pus_Sigma_3_zz[i];
-        const real pus_h_3_y = m->pus_h_3_y[i];
-        const real pus_h_3_z = m->pus_h_3_z[i];
-        const real pus_mu_3_x = pus_B_3_yx*pus_J_3_xy + pus_B_3_zx*pus_J_3_xz +
-            pus_B_3_zy*pus_Sigma_3_yy - pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) -
-            pus_Sigma_3_zz*pus_alpha_2_t - pus_acc_3_y*pus_h_3_y - pus_acc_3_z*pus_h_3_z;
-        const real pus_Sigma_3_xx = m->pus_Sigma_3_xx[i];
-        const real pus_h_3_x = m->pus_h_3_x[i];
-        const real pus_mu_3_y = pus_B_3_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_t_2 +
-            pus_acc_3_x*pus_h_3_y - pus_B_3_zx*pus_Sigma_3_xx - pus_B_3_zy*pus_J_3_xz -
-            pus_J_3_xy*(pus_W_3_t - pus_W_3_t_3) - pus_acc_3_z*pus_h_3_x;
-        const real pus_mu_3_z = pus_B_3_yx*pus_Sigma_3_xx + pus_acc_3_x*pus_h_3_z +
-            pus_acc_3_y*pus_h_3_x - pus_B_3_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_t -
-            pus_J_3_xz*(pus_W_3_t - pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_t_2;
+        const real pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t;
+        const real pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t;
+        const real pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y;
+        const real pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x;
         /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real pus_acc_1_x = -pus_g_r0_x - pus_qdd_1;
+        const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
+        const real pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x;
+        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
+        const real pus_acc_3_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2;
+        const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
+        const real pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x + pus_acc_3_t*pus_c_3_t -
+            pus_g_in_axes0_z*pus_s_3;
+        const real pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y + pus_acc_3_t*pus_s_3 +
+            pus_c_3_t*pus_g_in_axes0_z;
+        const real pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x -
+            pus_g_in_axes0_y*pus_s_2;
+        /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
+        const real pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
+        const real pus_mu_3_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
+        const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
+        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
+        const real pus_Sigma_3_in_axes3_yy = m->pus_Sigma_3_in_axes3_yy[i];
+        const real pus_Sigma_3_in_axes3_zz = m->pus_Sigma_3_in_axes3_zz[i];
+        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
+        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+        const real pus_mu_3_in_axes3_x = pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy +
+            pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz + pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy
+            - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3) -
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_t - pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z;
+        const real pus_Sigma_3_in_axes3_xx = m->pus_Sigma_3_in_axes3_xx[i];
+        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+        const real pus_mu_3_in_axes3_y = pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz +
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
+            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
+            - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
+            pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x;
+        const real pus_mu_3_in_axes3_z = pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx +
+            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z + pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x -
+            pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_t -
+            pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2) -
+            pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y;
         /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real pus_G_t = inv_pus_v_2_t*(pus_mu_3_x*pus_s_3 - pus_c_3*pus_mu_3_y);
-        const real pus_G_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_z;
+        const real pus_G_in_axes3_z = pus_w_2_in_axes3_z*(pus_mu_3_in_axes3_x*pus_s_3 -
+            pus_c_3_t*pus_mu_3_in_axes3_y);
+        const real pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y;
         /* (pus-c) leg force on the platform without actuation and without the mass at the connection
            point */
         const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_c_x = inv_pus_w_2_t*(pus_G_t*pus_c_2 + pus_G_t_2*pus_w_1_t +
-            pus_acc_1_x*pus_link1_mass) + pus_B_3_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 +
-            pus_W_3_t_3) - pus_alpha_2_t_2*pus_h_3_y;
-        const real pus_c_y = -pus_G_t_2 - pus_B_3_yx*pus_h_3_x - pus_alpha_2_t*pus_h_3_y -
-            pus_h_3_z*(pus_W_3_t + pus_W_3_t_3);
-        const real pus_c_z = pus_B_3_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_t
-            - pus_B_3_zx*pus_h_3_x;
+        const real pus_c_in_axes3_x = pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3) -
+            pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_w_1_in_axes3_x*(pus_G_in_axes3_z*pus_c_2_t + pus_acc_1_in_axes0_x*pus_link1_mass -
+            pus_G_in_axes3_y*pus_e_1_in_axes3_y);
+        const real pus_c_in_axes3_y = -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3);
+        const real pus_c_in_axes3_z = pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) - pus_G_in_axes3_z -
+            pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x;
         /* (pus-c_true) leg force on the platform without actuation, the last link's mass included */
         const real pus_link3_mass = m->pus_link3_mass[i];
-        const real pus_c_true_x = pus_c_x - pus_acc_3_x*pus_link3_mass;
-        const real pus_c_true_y = pus_c_y - pus_acc_3_y*pus_link3_mass;
-        const real pus_c_true_z = pus_c_z - pus_acc_3_z*pus_link3_mass;
-        const real pus_c_true_in_base_x = axis_x_pus_axes3_x*pus_c_true_x +
-            axis_y_pus_axes3_in_base_x*pus_c_true_y + axis_z_pus_axes3_in_base_x*pus_c_true_z;
-        const real pus_c_true_in_base_y = axis_x_pus_axes3_y*pus_c_true_x +
-            axis_y_pus_axes3_in_base_y*pus_c_true_y + axis_z_pus_axes3_in_base_y*pus_c_true_z;
-        const real pus_c_true_in_base_z = axis_x_pus_axes3_z*pus_c_true_x +
-            axis_y_pus_axes3_in_base_z*pus_c_true_y + axis_z_pus_axes3_in_base_z*pus_c_true_z;
-        o[0*count + k] = pus_c_true_in_base_x;
-        o[1*count + k] = pus_c_true_in_base_y;
-        o[2*count + k] = pus_c_true_in_base_z;
-        o[3*count + k] = -pus_w_1_t_3;
-        o[4*count + k] = -pus_w_1_t_4;
-        o[5*count + k] = -pus_w_1_t_5;
-        const real pus_size_t = m->pus_size_t[i];
+        const real pus_c_true_in_axes3_x = pus_c_in_axes3_x - pus_acc_3_in_axes3_x*pus_link3_mass;
+        const real pus_c_true_in_axes3_y = pus_c_in_axes3_y - pus_acc_3_in_axes3_y*pus_link3_mass;
+        const real pus_c_true_in_axes3_z = pus_c_in_axes3_z - pus_acc_3_in_axes3_z*pus_link3_mass;
+        const real pus_c_true_x = axis_x_pus_axes3_x*pus_c_true_in_axes3_x +
+            axis_y_pus_axes3_x*pus_c_true_in_axes3_y + axis_z_pus_axes3_x*pus_c_true_in_axes3_z;
+        const real pus_c_true_y = axis_x_pus_axes3_y*pus_c_true_in_axes3_x +
+            axis_y_pus_axes3_y*pus_c_true_in_axes3_y + axis_z_pus_axes3_y*pus_c_true_in_axes3_z;
+        const real pus_c_true_z = axis_x_pus_axes3_z*pus_c_true_in_axes3_x +
+            axis_y_pus_axes3_z*pus_c_true_in_axes3_y + axis_z_pus_axes3_z*pus_c_true_in_axes3_z;
+        /* (pus-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = pus_c_true_x;
+        o[1*count + k] = pus_c_true_y;
+        o[2*count + k] = pus_c_true_z;
+        /* (pus-w_1) reciprocal vector 1 */
+        o[3*count + k] = pus_w_1_x;
+        o[4*count + k] = pus_w_1_y;
+        o[5*count + k] = pus_w_1_z;
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
         o[6*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
-            TOLERANCE*1);
+        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -4743,13 +4841,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -4798,72 +4898,70 @@ INLINE void potential_legs_pus(const prepared *m, size_t w, size_t leg, size_t l
         const real t_z = s[2*w + j];
         const real pus_S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        const real pus_q_1 = pus_px_1 + pus_q_1_t;
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-q_1) displacement of joint 1 */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_q_1_t = -pus_branch_1*root(pus_disc_1);
+        const real pus_q_1 = pus_S_in_axes0_x - pus_q_1_t;
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_q_1_t*pus_q_1_t;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
         /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
-        /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real pus_h_3_x = m->pus_h_3_x[i];
-        const real pus_h_3_z = m->pus_h_3_z[i];
-        const real pus_d_Gamma_2_t = pus_h_3_z*pus_s_3 - pus_c_3*pus_h_3_x;
+        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
+            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
         /* (potential) potential energy */
-        const real pus_b_r0_x = m->pus_b_r0_x[i];
-        const real pus_g_r0_x = m->pus_g_r0_x[i];
-        const real pus_g_r0_y = m->pus_g_r0_y[i];
-        const real pus_g_r0_z = m->pus_g_r0_z[i];
-        const real pus_h_1_x = m->pus_h_1_x[i];
-        const real pus_h_1_y = m->pus_h_1_y[i];
-        const real pus_h_1_z = m->pus_h_1_z[i];
-        const real pus_h_3_y = m->pus_h_3_y[i];
+        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+        const real pus_potential_t_3 = pus_h_3_in_spec3_z*pus_s_3 - pus_c_3_t*pus_h_3_in_spec3_x;
+        const real pus_b_in_axes0_x = m->pus_b_in_axes0_x[i];
+        const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
+        const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
+        const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
+        const real pus_h_1_in_spec0_x = m->pus_h_1_in_spec0_x[i];
+        const real pus_h_1_in_spec0_y = m->pus_h_1_in_spec0_y[i];
+        const real pus_h_1_in_spec0_z = m->pus_h_1_in_spec0_z[i];
+        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
         const real pus_link1_mass = m->pus_link1_mass[i];
         const real pus_potential_t = m->pus_potential_t[i];
         const real pus_potential_t_2 = m->pus_potential_t_2[i];
-        const real pus_potential_t_3 = pus_g_r0_x*(pus_h_1_x + pus_d_Gamma_2_t*pus_s_2 +
-            pus_link1_mass*(pus_b_r0_x + pus_q_1) - pus_c_2*pus_h_3_y) + pus_g_r0_y*(pus_h_1_y +
-            pus_potential_t - pus_c_2*pus_d_Gamma_2_t - pus_h_3_y*pus_s_2) + pus_g_r0_z*(pus_h_1_z
-            + pus_potential_t_2 + pus_c_3*pus_h_3_z + pus_h_3_x*pus_s_3);
-        terms[0*count + k] = add ? terms[0*count + k] + pus_potential_t_3 : pus_potential_t_3;  /* total_pus */
-        const real pus_size_t = m->pus_size_t[i];
+        const real pus_potential_t_4 = pus_g_in_axes0_x*(pus_h_1_in_spec0_x +
+            pus_link1_mass*(pus_b_in_axes0_x + pus_q_1) - pus_c_2_t*pus_h_3_in_spec3_y -
+            pus_potential_t_3*pus_s_2) + pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t +
+            pus_h_3_in_spec3_y*pus_s_2 - pus_c_2_t*pus_potential_t_3) +
+            pus_g_in_axes0_z*(pus_h_1_in_spec0_z + pus_potential_t_2 +
+            pus_c_3_t*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*pus_s_3);
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + pus_potential_t_4 : pus_potential_t_4;  /* potential_t_2 */
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         o[0*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t);
+        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2);
     }
 }
 
@@ -4880,8 +4978,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_pus = sums[0*w + k];
-        const real potential_ = -potential_t - total_pus;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -4951,6 +5050,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -4971,138 +5071,131 @@ INLINE void condition_legs_pus(const prepared *m, size_t w, size_t leg, size_t l
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
             R_xz*pus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real pus_q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
             R_yz*pus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real pus_q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
             R_zz*pus_platform_point_z;
         const real pus_base_point_x = m->pus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x;
+        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
         const real pus_base_point_y = m->pus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y;
+        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
         const real pus_base_point_z = m->pus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z;
-        /* (pus-px_1) component along axis 1 */
+        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
         const real pus_base_frame_xx = m->pus_base_frame_xx[i];
         const real pus_base_frame_yx = m->pus_base_frame_yx[i];
         const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_px_1 = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
             pus_S_z*pus_base_frame_zx;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_disc_1_t = m->pus_disc_1_t[i];
-        const real pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
-        /* (pus-S) from the base point to the connection point */
         const real pus_base_frame_xy = m->pus_base_frame_xy[i];
         const real pus_base_frame_yy = m->pus_base_frame_yy[i];
         const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_r0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
             pus_S_z*pus_base_frame_zy;
+        /* (pus-disc_1) discriminant of the distance equation */
+        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+        const real pus_size_t = m->pus_size_t[i];
+        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+        /* (pus-x_2) from the origin of joint 2 to the connection point */
+        const real pus_branch_1 = m->pus_branch_1[i];
+        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
         /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t;
+        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
+            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
         /* (pus-root_2) root, with the sign of the branch */
         const real pus_branch_2 = m->pus_branch_2[i];
         const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_pus_rho2_2 = 1/pus_rho2_2;
+        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_disc_1_t_6 = m->inv_pus_disc_1_t_6[i];
+        const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2;
+        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
         /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 =
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
+            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
         /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_t = pus_c_3*pus_platform_joint_offset_x;
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
         /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 -
-            pus_base_frame_xy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 -
-            pus_base_frame_yy*pus_s_2;
-        const real axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 -
-            pus_base_frame_zy*pus_s_2;
-        const real pus_w_1_t = pus_s_2*pus_s_3;
-        const real pus_w_1_t_2 = pus_c_2*pus_s_3;
-        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*pus_w_1_t_2 -
-            pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*pus_w_1_t_2 -
-            pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3;
-        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*pus_w_1_t_2 -
-            pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_t = pus_c_3*pus_s_2;
-        const real inv_pus_w_2_t = 1/pus_w_2_t;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real pus_w_1_t_3 =
-            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y);
-        const real pus_w_1_t_4 =
-            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z);
-        const real pus_w_1_t_5 =
-            inv_pus_w_2_t*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x);
-        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        const real pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5;
-        const real pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3;
-        const real pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real pus_spread_t = b_c_x - pus_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real pus_spread_t_2 = b_c_y - pus_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real pus_spread_t_3 = b_c_z - pus_platform_point_z;
-        const real pus_spread_t_4 = pus_spread_t*pus_spread_t + pus_spread_t_2*pus_spread_t_2 +
-            pus_spread_t_3*pus_spread_t_3;
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_pivot_size = magnitude(pus_rho2_2);
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_pivot_size_2 = magnitude(pus_v_2_t);
-        const real pus_pivot_size_3 = magnitude(pus_w_2_t);
+        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
+        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
+        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
+        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
+        const real pus_w_1_t = pus_c_2_t*pus_s_3;
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3_t;
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3_t;
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3_t;
+        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
+        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+        const real pus_w_1_x = pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y);
+        const real pus_w_1_y = pus_w_1_in_axes3_x*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z);
+        const real pus_w_1_z = pus_w_1_in_axes3_x*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x);
         /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real pus_pivot_size = magnitude(pus_rho2_2);
+        const real pus_pivot_size_2 = magnitude(pus_v_2_in_axes3_z);
+        const real pus_pivot_size_3 = magnitude(pus_e_1_in_axes3_x);
         const real inv_pus_size = m->inv_pus_size[i];
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
+        const real inv_pus_size_t_2 = m->inv_pus_size_t_2[i];
         const real pus_least_pivots = lesser(lesser(pus_pivot_size_3,
-            inv_pus_size*pus_pivot_size_2), root(inv_pus_size_t*pus_pivot_size));
-        terms[0*count + k] = add ? terms[0*count + k] + pus_spread_t_4 : pus_spread_t_4;  /* total_pus */
-        o[0*count + k] = -pus_w_1_t_3;
-        o[1*count + k] = -pus_w_1_t_4;
-        o[2*count + k] = -pus_w_1_t_5;
+            inv_pus_size*pus_pivot_size_2), root(inv_pus_size_t_2*pus_pivot_size));
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+        const real pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y;
+        const real pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z;
+        const real pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real pus_spread_t = b_c_in_platform_x - pus_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real pus_spread_t_2 = b_c_in_platform_y - pus_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real pus_spread_t_3 = b_c_in_platform_z - pus_platform_point_z;
+        const real pus_spread_t_4 = pus_spread_t*pus_spread_t + pus_spread_t_2*pus_spread_t_2 +
+            pus_spread_t_3*pus_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + pus_spread_t_4 : pus_spread_t_4;  /* spread_pus */
+        /* (pus-w_1) reciprocal vector 1 */
+        o[0*count + k] = pus_w_1_x;
+        o[1*count + k] = pus_w_1_y;
+        o[2*count + k] = pus_w_1_z;
+        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = pus_H_a_1_x;
         o[4*count + k] = pus_H_a_1_y;
         o[5*count + k] = pus_H_a_1_z;
+        /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[6*count + k] = pus_least_pivots;
         o[7*count + k] = pus_disc_1;
-        o[10*count + k] = ((pus_w_1_t_3 + pus_w_1_t_4) + (pus_w_1_t_5 + pus_H_a_1_x)) +
-            ((pus_H_a_1_y + pus_H_a_1_z) + (pus_least_pivots + pus_disc_1));
-        const real pus_size_t = m->pus_size_t[i];
+        o[10*count + k] = ((pus_w_1_x + pus_w_1_y) + (pus_w_1_z + pus_H_a_1_x)) + ((pus_H_a_1_y +
+            pus_H_a_1_z) + (pus_least_pivots + pus_disc_1));
+        const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
         o[8*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[9*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t) +
-            UNLESS(magnitude(pus_v_2_t) > TOLERANCE*pus_size) + UNLESS(magnitude(-pus_w_2_t) >
-            TOLERANCE*1);
+        o[9*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(pus_e_1_in_axes3_x) > TOLERANCE*1);
     }
 }
 
@@ -5129,9 +5222,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_pus = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_pus = sums[0*w + k];
-        const real spread_ = spread_t*root(total_pus);
+        const real spread_ = root(spread_pus)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -97,21 +97,25 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 6 legs of type pus; copies of the first fill up */
-    hexaglide_real inv_pus_disc_1_t_6[8], inv_pus_platform_joint_offset_x[8], inv_pus_size[8],
-            inv_pus_size_t[8], pus_J_3_xx[8], pus_J_3_xy[8], pus_J_3_xz[8], pus_J_3_yz[8],
-            pus_J_3_zz[8], pus_Sigma_3_xx[8], pus_Sigma_3_yy[8], pus_Sigma_3_zz[8], pus_b_r0_x[8],
-            pus_base_frame_xx[8], pus_base_frame_xy[8], pus_base_frame_xz[8], pus_base_frame_yx[8],
-            pus_base_frame_yy[8], pus_base_frame_yz[8], pus_base_frame_zx[8], pus_base_frame_zy[8],
-            pus_base_frame_zz[8], pus_base_point_x[8], pus_base_point_y[8], pus_base_point_z[8],
-            pus_branch_1[8], pus_branch_2[8], pus_d_Gamma_3_t[8], pus_d_Gamma_3_y[8], pus_d_c_yy[8],
-            pus_d_phi_3_t[8], pus_disc_1_t[8], pus_g_r0_x[8], pus_g_r0_y[8], pus_g_r0_z[8],
-            pus_h_1_x[8], pus_h_1_y[8], pus_h_1_z[8], pus_h_3_x[8], pus_h_3_y[8], pus_h_3_z[8],
-            pus_link1_mass[8], pus_link3_mass[8], pus_platform_joint_offset_x[8],
-            pus_platform_point_x[8], pus_platform_point_y[8], pus_platform_point_z[8],
-            pus_potential_t[8], pus_potential_t_2[8], pus_size[8], pus_size_t[8];
-    hexaglide_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
+    hexaglide_real inv_pus_size[8], inv_pus_size_t[8], inv_pus_size_t_2[8], pus_J_3_in_spec3_xx[8],
+            pus_J_3_in_spec3_xy[8], pus_J_3_in_spec3_xz[8], pus_J_3_in_spec3_yz[8],
+            pus_J_3_in_spec3_zz[8], pus_Sigma_3_in_axes3_xx[8], pus_Sigma_3_in_axes3_yy[8],
+            pus_Sigma_3_in_axes3_zz[8], pus_b_in_axes0_x[8], pus_base_frame_xx[8],
+            pus_base_frame_xy[8], pus_base_frame_xz[8], pus_base_frame_yx[8], pus_base_frame_yy[8],
+            pus_base_frame_yz[8], pus_base_frame_zx[8], pus_base_frame_zy[8], pus_base_frame_zz[8],
+            pus_base_point_x[8], pus_base_point_y[8], pus_base_point_z[8], pus_branch_1[8],
+            pus_branch_2[8], pus_d_Gamma_3_in_axes3_y[8], pus_d_Gamma_3_t[8], pus_d_c_in_axes3_yy[8],
+            pus_d_phi_3_in_axes3_xy[8], pus_g_in_axes0_x[8], pus_g_in_axes0_y[8], pus_g_in_axes0_z[8],
+            pus_h_1_in_spec0_x[8], pus_h_1_in_spec0_y[8], pus_h_1_in_spec0_z[8],
+            pus_h_3_in_spec3_x[8], pus_h_3_in_spec3_y[8], pus_h_3_in_spec3_z[8], pus_link1_mass[8],
+            pus_link3_mass[8], pus_platform_joint_offset_x[8], pus_platform_point_x[8],
+            pus_platform_point_y[8], pus_platform_point_z[8], pus_potential_t[8],
+            pus_potential_t_2[8], pus_size[8], pus_size_t[8], pus_size_t_2[8], pus_w_3_in_axes3_y[8];
+    hexaglide_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hexaglide_model;
 
 extern const hexaglide_params hexaglide_default_params;

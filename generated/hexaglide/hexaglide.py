@@ -366,7 +366,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -553,42 +553,68 @@ def _prepare(p):
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
     # (spread) rms distance of the platform points from their centroid
     spread_t = 0.16666666666666666*sqrt(6.0)
-    # (pus-disc_1) discriminant of the distance equation
-    pus_disc_1_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x
     # (pus-size) length of the leg's lever arms, the measure of what is near singular
-    pus_size_t = 4.9e-07 + pus_disc_1_t
-    pus_size = sqrt(pus_size_t)
-    # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-    inv_pus_disc_1_t_6 = 1.0/pus_disc_1_t
+    pus_size_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x
+    pus_size_t_2 = 4.9e-07 + pus_size_t
+    pus_size = sqrt(pus_size_t_2)
+    # (pus-h_1) first moment of link 1 about the origin of link 1
+    pus_h_1_in_spec0_x = pus_link1_centre_of_mass_x*pus_link1_mass
+    pus_h_1_in_spec0_y = pus_link1_centre_of_mass_y*pus_link1_mass
+    pus_h_1_in_spec0_z = pus_link1_centre_of_mass_z*pus_link1_mass
     # (pus-rho_tip_3) connection point to the centre of mass of link 3
-    pus_rho_tip_3_x = pus_link3_centre_of_mass_x - pus_platform_joint_offset_x
+    pus_rho_tip_3_in_spec3_x = pus_link3_centre_of_mass_x - pus_platform_joint_offset_x
     # (pus-h_3) first moment of link 3 about the connection point
-    pus_h_3_x = pus_link3_mass*pus_rho_tip_3_x
-    pus_h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass
-    pus_h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass
-    # (pus-w_3) reciprocal vector 3
-    inv_pus_platform_joint_offset_x = 1.0/pus_platform_joint_offset_x
-    # (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    pus_d_phi_3_t = inv_pus_platform_joint_offset_x*pus_h_3_z
+    pus_h_3_in_spec3_x = pus_link3_mass*pus_rho_tip_3_in_spec3_x
+    pus_h_3_in_spec3_y = pus_link3_centre_of_mass_y*pus_link3_mass
+    pus_h_3_in_spec3_z = pus_link3_centre_of_mass_z*pus_link3_mass
     # (pus-J_3) inertia tensor of link 3 about the connection point
-    pus_J_3_t = pus_rho_tip_3_x*pus_rho_tip_3_x
+    inv_pus_size_t = 1.0/pus_size_t
+    pus_J_3_t = pus_rho_tip_3_in_spec3_x*pus_rho_tip_3_in_spec3_x
     pus_J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y
     pus_J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z
     pus_J_3_t_4 = pus_J_3_t + pus_J_3_t_2 + pus_J_3_t_3
-    pus_J_3_xx = pus_link3_inertia_xx - pus_link3_mass*(pus_J_3_t - pus_J_3_t_4)
-    pus_J_3_xy = pus_link3_inertia_xy - pus_link3_centre_of_mass_y*pus_link3_mass*pus_rho_tip_3_x
-    pus_J_3_xz = pus_link3_inertia_xz - pus_link3_centre_of_mass_z*pus_link3_mass*pus_rho_tip_3_x
-    pus_J_3_yy = pus_link3_inertia_yy - pus_link3_mass*(pus_J_3_t_2 - pus_J_3_t_4)
-    pus_J_3_yz = (
+    pus_J_3_in_spec3_xx = pus_link3_inertia_xx - pus_link3_mass*(pus_J_3_t - pus_J_3_t_4)
+    pus_J_3_in_spec3_xy = (
+    pus_link3_inertia_xy - pus_link3_centre_of_mass_y*pus_link3_mass*pus_rho_tip_3_in_spec3_x
+    )
+    pus_J_3_in_spec3_xz = (
+    pus_link3_inertia_xz - pus_link3_centre_of_mass_z*pus_link3_mass*pus_rho_tip_3_in_spec3_x
+    )
+    pus_J_3_in_spec3_yy = pus_link3_inertia_yy - pus_link3_mass*(pus_J_3_t_2 - pus_J_3_t_4)
+    pus_J_3_in_spec3_yz = (
     pus_link3_inertia_yz - pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass
     )
-    pus_J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 - pus_J_3_t_4)
+    pus_J_3_in_spec3_zz = pus_link3_inertia_zz - pus_link3_mass*(pus_J_3_t_3 - pus_J_3_t_4)
+    # (pus-w_3) reciprocal vector 3
+    pus_w_3_in_axes3_y = 1.0/pus_platform_joint_offset_x
+    # (pus-acc_1) acceleration of the reference point of link 1, less gravity
+    pus_g_in_axes0_x = (
+    gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx + gravity_z*pus_base_frame_zx
+    )
+    # (pus-acc_3) acceleration of the reference point of link 3, less gravity
+    pus_g_in_axes0_y = (
+    gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy + gravity_z*pus_base_frame_zy
+    )
+    pus_g_in_axes0_z = (
+    gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz + gravity_z*pus_base_frame_zz
+    )
+    # (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    pus_d_phi_3_in_axes3_xy = pus_h_3_in_spec3_z*pus_w_3_in_axes3_y
+    # (pus-trace_J_3) half the trace of that inertia tensor
+    pus_trace_J_3 = 0.5*pus_J_3_in_spec3_xx + 0.5*pus_J_3_in_spec3_yy + 0.5*pus_J_3_in_spec3_zz
+    # (pus-Sigma_3) second moment of mass of the links that turn with link 3
+    pus_Sigma_3_in_axes3_xx = pus_trace_J_3 - pus_J_3_in_spec3_xx
+    pus_Sigma_3_in_axes3_yy = pus_trace_J_3 - pus_J_3_in_spec3_zz
+    pus_Sigma_3_in_axes3_zz = pus_trace_J_3 - pus_J_3_in_spec3_yy
     # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    pus_d_Gamma_3_t = inv_pus_platform_joint_offset_x*pus_J_3_yy
-    pus_d_Gamma_3_y = pus_d_Gamma_3_t + pus_h_3_x
+    pus_d_Gamma_3_t = pus_J_3_in_spec3_yy*pus_w_3_in_axes3_y
+    pus_d_Gamma_3_in_axes3_y = pus_d_Gamma_3_t + pus_h_3_in_spec3_x
+    # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_pus_size_t_2 = 1.0/pus_size_t_2
+    inv_pus_size = 1.0/pus_size
     # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    pus_d_c_yy = (
-    -inv_pus_platform_joint_offset_x*pus_d_Gamma_3_y - inv_pus_platform_joint_offset_x*pus_h_3_x
+    pus_d_c_in_axes3_yy = (
+    -pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_y - pus_h_3_in_spec3_x*pus_w_3_in_axes3_y
     )
     # (h_star) first moment about the platform origin
     pus_h_star_t = pus_link3_mass*pus_platform_point_x
@@ -605,28 +631,8 @@ def _prepare(p):
     pus_J_star_t_8 = pus_link3_mass*(pus_J_star_t_2 - pus_J_star_t_4)
     pus_J_star_t_9 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z
     pus_J_star_t_10 = pus_link3_mass*(pus_J_star_t_3 - pus_J_star_t_4)
-    # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    pus_g_r0_x = (
-    gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx + gravity_z*pus_base_frame_zx
-    )
-    pus_g_r0_y = (
-    gravity_x*pus_base_frame_xy + gravity_y*pus_base_frame_yy + gravity_z*pus_base_frame_zy
-    )
-    pus_g_r0_z = (
-    gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz + gravity_z*pus_base_frame_zz
-    )
-    # (pus-trace_J_3) half the trace of that inertia tensor
-    pus_trace_J_3 = 0.5*pus_J_3_xx + 0.5*pus_J_3_yy + 0.5*pus_J_3_zz
-    # (pus-Sigma_3) second moment of mass of the links that turn with link 3
-    pus_Sigma_3_xx = pus_trace_J_3 - pus_J_3_xx
-    pus_Sigma_3_yy = pus_trace_J_3 - pus_J_3_zz
-    pus_Sigma_3_zz = pus_trace_J_3 - pus_J_3_yy
-    # (pus-h_1) first moment of link 1 about the origin of link 1
-    pus_h_1_x = pus_link1_centre_of_mass_x*pus_link1_mass
-    pus_h_1_y = pus_link1_centre_of_mass_y*pus_link1_mass
-    pus_h_1_z = pus_link1_centre_of_mass_z*pus_link1_mass
     # (potential) potential energy
-    pus_b_r0_x = (
+    pus_b_in_axes0_x = (
     pus_base_frame_xx*pus_base_point_x + pus_base_frame_yx*pus_base_point_y +
         pus_base_frame_zx*pus_base_point_z
     )
@@ -638,102 +644,106 @@ def _prepare(p):
     pus_link1_mass*(pus_base_frame_xz*pus_base_point_x + pus_base_frame_yz*pus_base_point_y +
         pus_base_frame_zz*pus_base_point_z)
     )
-    # (pus-rho2_2) squared amplitude
-    inv_pus_size_t = 1.0/pus_size_t
-    # (pus-w_2) reciprocal vector 2
-    inv_pus_size = 1.0/pus_size
-    total_pus = np.sum(np.broadcast_to(pus_link3_mass, _pus))
-    total_pus_x = np.sum(np.broadcast_to(pus_h_star_t, _pus))
-    total_pus_y = np.sum(np.broadcast_to(pus_h_star_t_2, _pus))
-    total_pus_z = np.sum(np.broadcast_to(pus_h_star_t_3, _pus))
-    total_pus_xx = np.sum(np.broadcast_to(pus_J_star_t_5, _pus))
-    total_pus_xy = np.sum(np.broadcast_to(pus_J_star_t_6, _pus))
-    total_pus_xz = np.sum(np.broadcast_to(pus_J_star_t_7, _pus))
-    total_pus_yy = np.sum(np.broadcast_to(pus_J_star_t_8, _pus))
-    total_pus_yz = np.sum(np.broadcast_to(pus_J_star_t_9, _pus))
-    total_pus_zz = np.sum(np.broadcast_to(pus_J_star_t_10, _pus))
-    total_pus_x_2 = np.sum(np.broadcast_to(pus_platform_point_x, _pus))
-    total_pus_y_2 = np.sum(np.broadcast_to(pus_platform_point_y, _pus))
-    total_pus_z_2 = np.sum(np.broadcast_to(pus_platform_point_z, _pus))
-    total_pus_2 = np.sum(np.broadcast_to(pus_size_t, _pus))
+    m_star_pus = np.sum(np.broadcast_to(pus_link3_mass, _pus))
+    h_star_pus_in_platform_x = np.sum(np.broadcast_to(pus_h_star_t, _pus))
+    h_star_pus_in_platform_y = np.sum(np.broadcast_to(pus_h_star_t_2, _pus))
+    h_star_pus_in_platform_z = np.sum(np.broadcast_to(pus_h_star_t_3, _pus))
+    J_star_pus_in_platform_xx = np.sum(np.broadcast_to(-pus_J_star_t_5, _pus))
+    J_star_pus_in_platform_xy = np.sum(np.broadcast_to(-pus_J_star_t_6, _pus))
+    J_star_pus_in_platform_xz = np.sum(np.broadcast_to(-pus_J_star_t_7, _pus))
+    J_star_pus_in_platform_yy = np.sum(np.broadcast_to(-pus_J_star_t_8, _pus))
+    J_star_pus_in_platform_yz = np.sum(np.broadcast_to(-pus_J_star_t_9, _pus))
+    J_star_pus_in_platform_zz = np.sum(np.broadcast_to(-pus_J_star_t_10, _pus))
+    b_c_pus_in_platform_x = np.sum(np.broadcast_to(pus_platform_point_x, _pus))
+    b_c_pus_in_platform_y = np.sum(np.broadcast_to(pus_platform_point_y, _pus))
+    b_c_pus_in_platform_z = np.sum(np.broadcast_to(pus_platform_point_z, _pus))
+    legs_size_pus = np.sum(np.broadcast_to(pus_size_t_2, _pus))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_pus
+    m_star = m_star_pus + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_pus_x
-    h_star_y = h_star_t_2 + total_pus_y
-    h_star_z = h_star_t_3 + total_pus_z
+    h_star_in_platform_x = h_star_pus_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_pus_in_platform_y + h_star_t_2
+    h_star_in_platform_z = h_star_pus_in_platform_z + h_star_t_3
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_pus_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_pus_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_pus_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_pus_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_pus_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_pus_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_pus_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_pus_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_pus_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_pus_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_pus_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_pus_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_pus_x_2
-    b_c_y = 0.16666666666666666*total_pus_y_2
-    b_c_z = 0.16666666666666666*total_pus_z_2
+    b_c_in_platform_x = 0.16666666666666666*b_c_pus_in_platform_x
+    b_c_in_platform_y = 0.16666666666666666*b_c_pus_in_platform_y
+    b_c_in_platform_z = 0.16666666666666666*b_c_pus_in_platform_z
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_pus_2)
+    legs_size = sqrt(legs_size_pus)*spread_t
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xx, pus_J_3_xy, pus_J_3_xz,
-                    pus_J_3_yz, pus_J_3_zz, pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz,
-                    pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
-                    pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
-                    pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
-                    pus_branch_1, pus_branch_2, pus_d_Gamma_3_t, pus_d_Gamma_3_y, pus_d_c_yy,
-                    pus_d_phi_3_t, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x,
-                    pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x,
-                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
-                    pus_size_t,),
+        (inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
+                    pus_J_3_in_spec3_yz, pus_J_3_in_spec3_zz, pus_Sigma_3_in_axes3_xx,
+                    pus_Sigma_3_in_axes3_yy, pus_Sigma_3_in_axes3_zz, pus_base_frame_xx,
+                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
+                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
+                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+                    pus_branch_2, pus_d_Gamma_3_in_axes3_y, pus_d_Gamma_3_t, pus_d_c_in_axes3_yy,
+                    pus_d_phi_3_in_axes3_xy, pus_g_in_axes0_x, pus_g_in_axes0_y, pus_g_in_axes0_z,
+                    pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z, pus_link1_mass,
+                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+                    pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
+                    pus_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xx, pus_J_3_xy, pus_J_3_xz,
-                    pus_J_3_yz, pus_J_3_zz, pus_base_frame_xx, pus_base_frame_xy,
-                    pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
-                    pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-                    pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2,
-                    pus_d_Gamma_3_t, pus_d_Gamma_3_y, pus_d_c_yy, pus_d_phi_3_t, pus_disc_1_t,
-                    pus_h_3_x, pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x,
+        (inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
+                    pus_J_3_in_spec3_yz, pus_J_3_in_spec3_zz, pus_base_frame_xx,
+                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
+                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
+                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+                    pus_branch_2, pus_d_Gamma_3_in_axes3_y, pus_d_Gamma_3_t, pus_d_c_in_axes3_yy,
+                    pus_d_phi_3_in_axes3_xy, pus_h_3_in_spec3_x, pus_h_3_in_spec3_y,
+                    pus_h_3_in_spec3_z, pus_link1_mass, pus_platform_joint_offset_x,
                     pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
-                    pus_size_t,),
+                    pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
-                    pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx,
-                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
-                    pus_branch_2, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x,
-                    pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x,
-                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
-                    pus_size_t,),
+        (inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
+                    pus_Sigma_3_in_axes3_xx, pus_Sigma_3_in_axes3_yy, pus_Sigma_3_in_axes3_zz,
+                    pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
+                    pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
+                    pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
+                    pus_branch_1, pus_branch_2, pus_g_in_axes0_x, pus_g_in_axes0_y,
+                    pus_g_in_axes0_z, pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z,
+                    pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
+                    pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,
+                    pus_size_t_2, pus_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -741,29 +751,32 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        (inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
                     pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
                     pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-                    pus_platform_point_z, pus_size_t,),
+                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size_t,
+                    pus_size_t_2,),
                 ),
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
-                    pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx,
-                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
-                    pus_branch_2, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x,
-                    pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x,
-                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
-                    pus_size_t,),
+        (inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
+                    pus_Sigma_3_in_axes3_xx, pus_Sigma_3_in_axes3_yy, pus_Sigma_3_in_axes3_zz,
+                    pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
+                    pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
+                    pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
+                    pus_branch_1, pus_branch_2, pus_g_in_axes0_x, pus_g_in_axes0_y,
+                    pus_g_in_axes0_z, pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z,
+                    pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
+                    pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,
+                    pus_size_t_2, pus_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -771,12 +784,12 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        (inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
                     pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
                     pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-                    pus_platform_point_z, pus_size_t,),
+                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size_t,
+                    pus_size_t_2,),
                 ),
             ),
         ),
@@ -784,12 +797,12 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_base_frame_xx,
-                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
-                    pus_branch_2, pus_disc_1_t, pus_platform_joint_offset_x, pus_platform_point_x,
-                    pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,),
+        (inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+                    pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
+                    pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
+                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+                    pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -797,12 +810,12 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_base_frame_xx,
-                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
-                    pus_branch_2, pus_disc_1_t, pus_platform_joint_offset_x, pus_platform_point_x,
-                    pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,),
+        (inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+                    pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
+                    pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
+                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+                    pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -810,43 +823,47 @@ def _prepare(p):
         (),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
-                    pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx,
-                    pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
-                    pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
-                    pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
-                    pus_branch_2, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x,
-                    pus_h_3_y, pus_h_3_z, pus_link1_mass, pus_link3_mass,
-                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-                    pus_platform_point_z, pus_size, pus_size_t,),
+        (inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
+                    pus_Sigma_3_in_axes3_xx, pus_Sigma_3_in_axes3_yy, pus_Sigma_3_in_axes3_zz,
+                    pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
+                    pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
+                    pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z,
+                    pus_branch_1, pus_branch_2, pus_g_in_axes0_x, pus_g_in_axes0_y,
+                    pus_g_in_axes0_z, pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z,
+                    pus_link1_mass, pus_link3_mass, pus_platform_joint_offset_x,
+                    pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+                    pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, pus_b_r0_x, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
-                    pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
-                    pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-                    pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t, pus_g_r0_x,
-                    pus_g_r0_y, pus_g_r0_z, pus_h_1_x, pus_h_1_y, pus_h_1_z, pus_h_3_x, pus_h_3_y,
-                    pus_h_3_z, pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-                    pus_platform_point_y, pus_platform_point_z, pus_potential_t,
-                    pus_potential_t_2, pus_size_t,),
+        (inv_pus_size_t, pus_b_in_axes0_x, pus_base_frame_xx, pus_base_frame_xy,
+                    pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+                    pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+                    pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2,
+                    pus_g_in_axes0_x, pus_g_in_axes0_y, pus_g_in_axes0_z, pus_h_1_in_spec0_x,
+                    pus_h_1_in_spec0_y, pus_h_1_in_spec0_z, pus_h_3_in_spec3_x,
+                    pus_h_3_in_spec3_y, pus_h_3_in_spec3_z, pus_link1_mass,
+                    pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+                    pus_platform_point_z, pus_potential_t, pus_potential_t_2, pus_size_t,
+                    pus_size_t_2,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_pus,
-        (inv_pus_disc_1_t_6, inv_pus_size, inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy,
+        (inv_pus_size, inv_pus_size_t, inv_pus_size_t_2, pus_base_frame_xx, pus_base_frame_xy,
                     pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
                     pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-                    pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+                    pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2,
                     pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-                    pus_platform_point_z, pus_size, pus_size_t,),
+                    pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,),
                 ),
             ),
         ),
@@ -1341,9 +1358,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1398,445 +1416,497 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xx, pus_J_3_xy, pus_J_3_xz,
-            pus_J_3_yz, pus_J_3_zz, pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz,
-            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
-            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
-            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
-            pus_branch_2, pus_d_Gamma_3_t, pus_d_Gamma_3_y, pus_d_c_yy, pus_d_phi_3_t,
-            pus_disc_1_t, pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x, pus_h_3_y, pus_h_3_z,
-            pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,
+        inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
+            pus_J_3_in_spec3_yz, pus_J_3_in_spec3_zz, pus_Sigma_3_in_axes3_xx,
+            pus_Sigma_3_in_axes3_yy, pus_Sigma_3_in_axes3_zz, pus_base_frame_xx,
+            pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
+            pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
+            pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2,
+            pus_d_Gamma_3_in_axes3_y, pus_d_Gamma_3_t, pus_d_c_in_axes3_yy,
+            pus_d_phi_3_in_axes3_xy, pus_g_in_axes0_x, pus_g_in_axes0_y, pus_g_in_axes0_z,
+            pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z, pus_link1_mass,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
-        # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        # (pus-J_3) inertia tensor of link 3 about the connection point
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_6 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_5
+        pus_J_3_t_7 = -sqrt(pus_J_3_t_6)*pus_branch_1
+        pus_J_3_t_8 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        pus_J_3_t_9 = pus_J_3_t_7*pus_J_3_t_7 + pus_J_3_t_8*pus_J_3_t_8
+        pus_J_3_t_10 = sqrt(pus_J_3_t_9)*pus_branch_2
+        pus_J_3_t_11 = inv_pus_size_t*pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
         )
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        pus_J_3_in_axes2_xz = (
+        pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_11
+        )
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        inv_pus_J_3_t_9 = 1.0/pus_J_3_t_9
+        pus_c_2_t = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_8
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
-        # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
-        )
-        axis_x_pus_axes3_x = (
-        axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y
-        )
-        axis_x_pus_axes3_y = (
-        axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z
-        )
-        axis_x_pus_axes3_z = (
-        axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
-        )
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
-        inv_pus_v_2_t = 1.0/pus_v_2_t
-        inv_pus_w_2_t = 1.0/pus_w_2_t
-        pus_w_2_t_2 = inv_pus_v_2_t*inv_pus_w_2_t*pus_c_2
-        # (pus-w_3) reciprocal vector 3
-        pus_w_3_t = inv_pus_platform_joint_offset_x*inv_pus_w_2_t*pus_w_1_t
-        # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        pus_d_alpha_3_t = inv_pus_v_2_t*pus_s_3
-        pus_d_alpha_3_t_2 = inv_pus_v_2_t*pus_c_3
-        # (pus-L_c_3) moment about joint 3 that accelerates joint 3, per unit
-        pus_L_c_3_r0_y = pus_J_3_xy*pus_s_3 + pus_J_3_yz*pus_c_3
-        # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        pus_d_Gamma_3_t_2 = inv_pus_v_2_t*pus_L_c_3_r0_y
-        pus_d_Gamma_3_x = (
-        pus_h_3_z - inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_3_t_2 + pus_d_Gamma_3_t*pus_w_1_t)
-        )
-        # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        pus_d_Gamma_2_t = (
-        inv_pus_v_2_t*(pus_s_3*(pus_J_3_xx*pus_s_3 + pus_J_3_xz*pus_c_3) -
-            pus_c_3*(-pus_J_3_xz*pus_s_3 - pus_J_3_zz*pus_c_3))
-        )
-        pus_d_Gamma_2_t_2 = inv_pus_platform_joint_offset_x*pus_L_c_3_r0_y
-        pus_d_Gamma_2_x = (
-        -inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_2_t + pus_d_Gamma_2_t_2*pus_w_1_t) - pus_c_3*pus_h_3_y
-        )
-        pus_d_Gamma_2_y = pus_d_Gamma_2_t_2 - pus_h_3_y*pus_s_3
-        pus_d_Gamma_2_z = pus_d_Gamma_2_t + pus_c_3*pus_h_3_x - pus_h_3_z*pus_s_3
-        # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        pus_d_c_xx = (
-        pus_d_Gamma_2_x*pus_w_2_t_2 + pus_d_Gamma_3_x*pus_w_3_t + pus_h_3_z*pus_w_3_t -
-            inv_pus_w_2_t*inv_pus_w_2_t*pus_link1_mass - pus_c_3*pus_h_3_y*pus_w_2_t_2
-        )
-        pus_d_c_xy = pus_d_Gamma_2_y*pus_w_2_t_2 + pus_d_Gamma_3_y*pus_w_3_t - pus_d_phi_3_t
-        pus_d_c_xz = (
-        pus_d_Gamma_2_z*pus_w_2_t_2 + pus_d_Gamma_3_t_2*pus_w_3_t + pus_d_alpha_3_t_2*pus_h_3_y
-        )
-        pus_d_c_yz = pus_d_alpha_3_t*pus_h_3_y - inv_pus_platform_joint_offset_x*pus_d_Gamma_3_t_2
-        # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
-        pus_Q_t = pus_d_c_xx - pus_d_c_yy
-        pus_Q_t_2 = 0.5*pus_Q_t
-        pus_Q_t_3 = (
-        pus_d_c_xx + inv_pus_v_2_t*pus_d_Gamma_2_z + pus_d_alpha_3_t_2*pus_h_3_x -
-            pus_d_alpha_3_t*pus_h_3_z
-        )
-        pus_Q_t_4 = 0.5*pus_Q_t_3
-        pus_Q_t_5 = (
-        axis_x_pus_axes3_x*pus_d_c_xy + axis_z_pus_axes3_in_base_x*pus_d_c_yz -
-            axis_y_pus_axes3_in_base_x*pus_Q_t_2
-        )
-        pus_Q_t_6 = (
-        axis_x_pus_axes3_y*pus_d_c_xy + axis_z_pus_axes3_in_base_y*pus_d_c_yz -
-            axis_y_pus_axes3_in_base_y*pus_Q_t_2
-        )
-        pus_Q_t_7 = (
-        axis_x_pus_axes3_z*pus_d_c_xy + axis_z_pus_axes3_in_base_z*pus_d_c_yz -
-            axis_y_pus_axes3_in_base_z*pus_Q_t_2
-        )
-        pus_Q_t_8 = axis_z_pus_axes3_in_base_x*pus_Q_t_4 - axis_x_pus_axes3_x*pus_d_c_xz
-        pus_Q_t_9 = axis_z_pus_axes3_in_base_y*pus_Q_t_4 - axis_x_pus_axes3_y*pus_d_c_xz
-        pus_Q_t_10 = axis_z_pus_axes3_in_base_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_xz
-        pus_Q_t_11 = axis_y_pus_axes3_in_base_x*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_8
-        pus_Q_t_12 = 2.0*pus_Q_t_11 + pus_d_c_xx
-        pus_Q_t_13 = (
-        axis_y_pus_axes3_in_base_x*pus_Q_t_6 + axis_y_pus_axes3_in_base_y*pus_Q_t_5 -
-            axis_z_pus_axes3_in_base_x*pus_Q_t_9 - axis_z_pus_axes3_in_base_y*pus_Q_t_8
-        )
-        pus_Q_t_14 = (
-        axis_y_pus_axes3_in_base_x*pus_Q_t_7 + axis_y_pus_axes3_in_base_z*pus_Q_t_5 -
-            axis_z_pus_axes3_in_base_x*pus_Q_t_10 - axis_z_pus_axes3_in_base_z*pus_Q_t_8
-        )
-        pus_Q_t_15 = axis_y_pus_axes3_in_base_y*pus_Q_t_6 - axis_z_pus_axes3_in_base_y*pus_Q_t_9
-        pus_Q_t_16 = 2.0*pus_Q_t_15 + pus_d_c_xx
-        pus_Q_t_17 = (
-        axis_y_pus_axes3_in_base_y*pus_Q_t_7 + axis_y_pus_axes3_in_base_z*pus_Q_t_6 -
-            axis_z_pus_axes3_in_base_y*pus_Q_t_10 - axis_z_pus_axes3_in_base_z*pus_Q_t_9
-        )
-        pus_Q_t_18 = axis_y_pus_axes3_in_base_z*pus_Q_t_7 - axis_z_pus_axes3_in_base_z*pus_Q_t_10
-        pus_Q_t_19 = 2.0*pus_Q_t_18 + pus_d_c_xx
-        # (M_ta) coupling block of M
-        pus_M_ta_t = pus_Q_t_13*pus_q_in_base_z
-        pus_M_ta_t_2 = pus_Q_t_14*pus_q_in_base_y
-        pus_M_ta_t_3 = pus_M_ta_t - pus_M_ta_t_2
-        pus_M_ta_t_4 = pus_Q_t_12*pus_q_in_base_z - pus_Q_t_14*pus_q_in_base_x
-        pus_M_ta_t_5 = pus_Q_t_12*pus_q_in_base_y - pus_Q_t_13*pus_q_in_base_x
-        pus_M_ta_t_6 = pus_Q_t_16*pus_q_in_base_z - pus_Q_t_17*pus_q_in_base_y
-        pus_M_ta_t_7 = pus_Q_t_17*pus_q_in_base_x
-        pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7
-        pus_M_ta_t_9 = pus_Q_t_13*pus_q_in_base_y - pus_Q_t_16*pus_q_in_base_x
-        pus_M_ta_t_10 = pus_Q_t_17*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_y
-        pus_M_ta_t_11 = pus_Q_t_14*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_x
-        pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
-        # (M_aa) rotational block of M
-        pus_M_aa_t = pus_M_ta_t_6*pus_q_in_base_z - pus_M_ta_t_10*pus_q_in_base_y
-        pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_y
-        pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_in_base_y + pus_M_ta_t_9*pus_q_in_base_z
-        pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_x
-        pus_M_aa_t_5 = pus_M_ta_t_12*pus_q_in_base_x + pus_M_ta_t_5*pus_q_in_base_z
-        pus_M_aa_t_6 = pus_M_ta_t_5*pus_q_in_base_y - pus_M_ta_t_9*pus_q_in_base_x
+        pus_s_2 = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_7
         # (pus-S_dot) velocity of the connection point
-        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
-        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
-        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
+        pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
+        pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x
         pus_S_dot_x = pus_S_dot_t + t_dot_x
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
-        # (pus-qd_3) rate of joint 3
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_J_3_t_11*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_e_1_in_axes3_y = pus_e_2_in_axes3_x*pus_s_2
+        pus_w_1_t = pus_c_2_t*pus_e_2_in_axes3_x
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_J_3_t_11*pus_base_frame_xz
+        )
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_J_3_t_11*pus_base_frame_yz
+        )
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_J_3_t_11*pus_base_frame_zz
+        )
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
+        pus_e_1_in_axes3_x = pus_J_3_t_11*pus_s_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
+        pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
+        pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        pus_w_2_in_axes3_x = pus_c_2_t*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z
+        # (pus-w_3) reciprocal vector 3
+        pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y
+        # (pus-qd_1) rate of joint 1
         pus_qd_1 = (
-        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+        pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
             axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        pus_qd_3_t = (
-        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
-            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
-        )
-        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
-        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1)
+        pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
         )
+        # (pus-qd_3) rate of joint 3
+        pus_qd_3_t = (
+        axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1
+        )
+        pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_t = pus_qd_2*pus_s_3
-        pus_omega_2_t_2 = pus_c_3*pus_qd_2
-        # (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3
-        pus_zeta_3_y = pus_omega_2_t*pus_qd_3
+        pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_J_3_t_11*pus_qd_2
+        # (pus-W_3) centripetal tensor of link 3
+        pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
+        pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
+        pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y
         # (pus-u_1) centripetal acceleration of the connection point
         pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
         pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
         pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
-        # (pus-W_3) centripetal tensor of link 3
-        pus_W_3_t = pus_omega_2_t*pus_omega_2_t
-        pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2
-        pus_W_3_t_3 = pus_qd_3*pus_qd_3
-        pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2
-        # (pus-bias) acceleration of the connection point at zero joint accelerations
-        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
-        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_platform_joint_offset_x*pus_zeta_3_y
-        # (pus-u_1) centripetal acceleration of the connection point
-        pus_u_1_tip_x = (
+        pus_u_1_in_axes3_x = (
         axis_x_pus_axes3_x*pus_u_1_x + axis_x_pus_axes3_y*pus_u_1_y + axis_x_pus_axes3_z*pus_u_1_z
         )
-        pus_u_1_tip_y = (
-        axis_y_pus_axes3_in_base_x*pus_u_1_x + axis_y_pus_axes3_in_base_y*pus_u_1_y +
-            axis_y_pus_axes3_in_base_z*pus_u_1_z
+        pus_u_1_in_axes3_y = (
+        axis_y_pus_axes3_x*pus_u_1_x + axis_y_pus_axes3_y*pus_u_1_y + axis_y_pus_axes3_z*pus_u_1_z
         )
-        pus_u_1_tip_z = (
-        axis_z_pus_axes3_in_base_x*pus_u_1_x + axis_z_pus_axes3_in_base_y*pus_u_1_y +
-            axis_z_pus_axes3_in_base_z*pus_u_1_z
+        pus_u_1_in_axes3_z = (
+        axis_z_pus_axes3_x*pus_u_1_x + axis_z_pus_axes3_y*pus_u_1_y + axis_z_pus_axes3_z*pus_u_1_z
+        )
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_in_axes3_z = (
+        pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        pus_rel_o_x = pus_u_1_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
-        pus_rel_o_y = pus_u_1_tip_y + pus_bias_t*pus_omega_2_t
-        pus_rel_o_z = pus_u_1_tip_z - pus_bias_z
+        pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_rel_o_in_axes3_x = (
+        pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t + pus_qd_3*pus_qd_3_t
+        )
+        pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t
+        pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z
+        # (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x
+        # (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z - pus_c_2_t*pus_qdd_1_o)
         # (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        pus_qdd_1_o = inv_pus_w_2_t*pus_rel_o_x
-        pus_qdd_3_o = inv_pus_platform_joint_offset_x*(pus_qdd_1_o*pus_w_1_t - pus_rel_o_y)
-        pus_qdd_2_o = inv_pus_v_2_t*(pus_c_2*pus_qdd_1_o - pus_rel_o_z)
+        pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
         # (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        pus_alpha_2_o_t = pus_qdd_2_o*pus_s_3
-        pus_alpha_2_o_t_2 = pus_c_3*pus_qdd_2_o
+        pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
+        pus_alpha_2_o_in_axes3_y = pus_J_3_t_11*pus_qdd_2_o_t
+        # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z
+        pus_d_alpha_3_t = pus_J_3_t_11*pus_w_2_in_axes3_z
         # (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        pus_alpha_3_o_x = -pus_alpha_2_o_t - pus_zeta_3_x
-        pus_alpha_3_o_y = pus_alpha_2_o_t_2 - pus_zeta_3_y
+        pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
+        pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
         # (pus-B_3_o) remainder of the acceleration tensor of link 3
-        pus_B_3_o_xy = pus_qdd_3_o - pus_W_3_xy
-        pus_B_3_o_yx = -pus_W_3_xy - pus_qdd_3_o
-        pus_B_3_o_zx = pus_zeta_3_y - pus_alpha_3_o_y
-        pus_B_3_o_zy = pus_alpha_3_o_x - pus_zeta_3_x
-        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y
-        pus_acc_3_o_x = pus_u_1_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3
-        pus_acc_3_o_y = pus_u_1_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3
-        pus_acc_3_o_z = pus_u_1_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2
-        # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        pus_mu_3_o_x = (
-        pus_B_3_o_yx*pus_J_3_xy + pus_B_3_o_zx*pus_J_3_xz + pus_B_3_o_zy*pus_Sigma_3_yy -
-            pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) - pus_Sigma_3_zz*pus_alpha_2_o_t -
-            pus_acc_3_o_y*pus_h_3_y - pus_acc_3_o_z*pus_h_3_z
-        )
-        pus_mu_3_o_y = (
-        pus_B_3_o_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_o_t_2 + pus_acc_3_o_x*pus_h_3_y -
-            pus_B_3_o_zx*pus_Sigma_3_xx - pus_B_3_o_zy*pus_J_3_xz - pus_J_3_xy*(pus_W_3_t -
-            pus_W_3_t_3) - pus_acc_3_o_z*pus_h_3_x
-        )
-        pus_mu_3_o_z = (
-        pus_B_3_o_yx*pus_Sigma_3_xx + pus_acc_3_o_x*pus_h_3_z + pus_acc_3_o_y*pus_h_3_x -
-            pus_B_3_o_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_o_t - pus_J_3_xz*(pus_W_3_t -
-            pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_o_t_2
-        )
+        pus_B_3_o_in_axes3_xy = pus_W_3_in_axes3_xy - pus_qdd_3_o
+        pus_B_3_o_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3_o
+        pus_B_3_o_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y
+        pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x
         # (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        pus_acc_1_o_x = -pus_g_r0_x - pus_qdd_1_o
+        pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x
+        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        pus_acc_3_o_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_acc_3_o_in_axes3_x = (
+        pus_u_1_in_axes3_x + pus_J_3_t_11*pus_acc_3_o_t - pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        )
+        pus_acc_3_o_in_axes3_y = (
+        pus_u_1_in_axes3_y + pus_J_3_t_11*pus_g_in_axes0_z + pus_acc_3_o_t*pus_e_2_in_axes3_x
+        )
+        pus_acc_3_o_in_axes3_z = (
+        pus_u_1_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x - pus_g_in_axes0_y*pus_s_2
+        )
+        # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
+        pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
+        pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3
+        pus_mu_3_o_in_axes3_x = (
+        pus_B_3_o_in_axes3_yx*pus_J_3_in_spec3_xy + pus_B_3_o_in_axes3_zx*pus_J_3_in_spec3_xz +
+            pus_B_3_o_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_o_t_2 -
+            pus_mu_3_o_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_t -
+            pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_z
+        )
+        pus_mu_3_o_in_axes3_y = (
+        pus_B_3_o_in_axes3_xy*pus_J_3_in_spec3_yz +
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_in_axes3_y +
+            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_y -
+            pus_B_3_o_in_axes3_zx*pus_Sigma_3_in_axes3_xx -
+            pus_B_3_o_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_o_t -
+            pus_mu_3_o_t_3) - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_x
+        )
+        pus_mu_3_o_in_axes3_z = (
+        pus_B_3_o_in_axes3_yx*pus_Sigma_3_in_axes3_xx + pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_z
+            + pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_x -
+            pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t -
+            pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
+            pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y
+        )
+        # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_xz*pus_w_2_in_axes3_z
+        pus_d_Gamma_3_in_axes3_x = (
+        pus_h_3_in_spec3_z + pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_3_in_axes3_z -
+            pus_d_Gamma_3_t*pus_e_1_in_axes3_y)
+        )
+        # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        pus_d_Gamma_2_t = (
+        pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*(pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_xz*pus_J_3_t_11) -
+            pus_J_3_t_11*(-pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x -
+            pus_J_3_in_spec3_zz*pus_J_3_t_11))
+        )
+        pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_xz*pus_w_3_in_axes3_y
+        pus_d_Gamma_2_in_axes3_x = (
+        pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_2_t - pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) -
+            pus_J_3_t_11*pus_h_3_in_spec3_y
+        )
+        pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
+        pus_d_Gamma_2_in_axes3_z = (
+        pus_d_Gamma_2_t + pus_J_3_t_11*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
+        )
         # (pus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        pus_G_o_t = inv_pus_v_2_t*(pus_mu_3_o_x*pus_s_3 - pus_c_3*pus_mu_3_o_y)
-        pus_G_o_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_o_z
+        pus_G_o_in_axes3_z = (
+        pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x -
+            pus_J_3_t_11*pus_mu_3_o_in_axes3_y)
+        )
+        pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
+        # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        pus_d_c_in_axes3_xx = (
+        pus_J_3_t_11*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+            pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
+            pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x
+        )
+        pus_d_c_in_axes3_xy = (
+        -pus_d_phi_3_in_axes3_xy - pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_x
+        )
+        pus_d_c_in_axes3_xz = (
+        pus_d_alpha_3_t*pus_h_3_in_spec3_y - pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x
+        )
+        pus_d_c_in_axes3_yz = (
+        pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y - pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y
+        )
         # (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        pus_c_o_x = (
-        inv_pus_w_2_t*(pus_G_o_t*pus_c_2 + pus_G_o_t_2*pus_w_1_t + pus_acc_1_o_x*pus_link1_mass) +
-            pus_B_3_o_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 + pus_W_3_t_3) -
-            pus_alpha_2_o_t_2*pus_h_3_y
+        pus_c_o_in_axes3_x = (
+        pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 +
+            pus_mu_3_o_t_3) - pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_w_1_in_axes3_x*(pus_G_o_in_axes3_z*pus_c_2_t +
+            pus_acc_1_o_in_axes0_x*pus_link1_mass - pus_G_o_in_axes3_y*pus_e_1_in_axes3_y)
         )
-        pus_c_o_y = (
-        -pus_G_o_t_2 - pus_B_3_o_yx*pus_h_3_x - pus_alpha_2_o_t*pus_h_3_y - pus_h_3_z*(pus_W_3_t +
-            pus_W_3_t_3)
+        pus_c_o_in_axes3_y = (
+        -pus_G_o_in_axes3_y - pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_o_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_o_t +
+            pus_mu_3_o_t_3)
         )
-        pus_c_o_z = (
-        pus_B_3_o_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_o_t -
-            pus_B_3_o_zx*pus_h_3_x
+        pus_c_o_in_axes3_z = (
+        pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_o_t +
+            pus_mu_3_o_t_2) - pus_G_o_in_axes3_z - pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
         )
+        # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
+        pus_Q_t = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy
+        pus_Q_t_2 = 0.5*pus_Q_t
+        pus_Q_t_3 = (
+        pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
+            pus_d_alpha_3_t*pus_h_3_in_spec3_x - pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z
+        )
+        pus_Q_t_4 = 0.5*pus_Q_t_3
+        pus_Q_t_5 = (
+        axis_x_pus_axes3_x*pus_d_c_in_axes3_xy + axis_z_pus_axes3_x*pus_d_c_in_axes3_yz -
+            axis_y_pus_axes3_x*pus_Q_t_2
+        )
+        pus_Q_t_6 = (
+        axis_x_pus_axes3_y*pus_d_c_in_axes3_xy + axis_z_pus_axes3_y*pus_d_c_in_axes3_yz -
+            axis_y_pus_axes3_y*pus_Q_t_2
+        )
+        pus_Q_t_7 = (
+        axis_x_pus_axes3_z*pus_d_c_in_axes3_xy + axis_z_pus_axes3_z*pus_d_c_in_axes3_yz -
+            axis_y_pus_axes3_z*pus_Q_t_2
+        )
+        pus_Q_t_8 = axis_z_pus_axes3_x*pus_Q_t_4 - axis_x_pus_axes3_x*pus_d_c_in_axes3_xz
+        pus_Q_t_9 = axis_z_pus_axes3_y*pus_Q_t_4 - axis_x_pus_axes3_y*pus_d_c_in_axes3_xz
+        pus_Q_t_10 = axis_z_pus_axes3_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_in_axes3_xz
+        pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 - axis_z_pus_axes3_x*pus_Q_t_8
+        pus_Q_xx = -2.0*pus_Q_t_11 - pus_d_c_in_axes3_xx
+        pus_Q_xy = (
+        axis_z_pus_axes3_x*pus_Q_t_9 + axis_z_pus_axes3_y*pus_Q_t_8 - axis_y_pus_axes3_x*pus_Q_t_6
+            - axis_y_pus_axes3_y*pus_Q_t_5
+        )
+        pus_Q_xz = (
+        axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_8 -
+            axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_5
+        )
+        pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 - axis_z_pus_axes3_y*pus_Q_t_9
+        pus_Q_yy = -2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
+        pus_Q_yz = (
+        axis_z_pus_axes3_y*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_9 -
+            axis_y_pus_axes3_y*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_6
+        )
+        pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 - axis_z_pus_axes3_z*pus_Q_t_10
+        pus_Q_zz = -2.0*pus_Q_t_13 - pus_d_c_in_axes3_xx
         # (pus-U) velocity and gravity terms of the leg force
-        pus_U_in_base_x = (
-        -axis_x_pus_axes3_x*pus_c_o_x - axis_y_pus_axes3_in_base_x*pus_c_o_y -
-            axis_z_pus_axes3_in_base_x*pus_c_o_z
+        pus_U_x = (
+        -axis_x_pus_axes3_x*pus_c_o_in_axes3_x - axis_y_pus_axes3_x*pus_c_o_in_axes3_y -
+            axis_z_pus_axes3_x*pus_c_o_in_axes3_z
         )
-        pus_U_in_base_y = (
-        -axis_x_pus_axes3_y*pus_c_o_x - axis_y_pus_axes3_in_base_y*pus_c_o_y -
-            axis_z_pus_axes3_in_base_y*pus_c_o_z
+        pus_U_y = (
+        -axis_x_pus_axes3_y*pus_c_o_in_axes3_x - axis_y_pus_axes3_y*pus_c_o_in_axes3_y -
+            axis_z_pus_axes3_y*pus_c_o_in_axes3_z
         )
-        pus_U_in_base_z = (
-        -axis_x_pus_axes3_z*pus_c_o_x - axis_y_pus_axes3_in_base_z*pus_c_o_y -
-            axis_z_pus_axes3_in_base_z*pus_c_o_z
+        pus_U_z = (
+        -axis_x_pus_axes3_z*pus_c_o_in_axes3_x - axis_y_pus_axes3_z*pus_c_o_in_axes3_y -
+            axis_z_pus_axes3_z*pus_c_o_in_axes3_z
         )
+        # (M_ta) coupling block of M
+        pus_M_ta_t = -pus_Q_xy*pus_q_z
+        pus_M_ta_t_2 = pus_Q_xz*pus_q_y
+        pus_M_ta_t_3 = pus_M_ta_t + pus_M_ta_t_2
+        pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x
+        pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y
+        pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z
+        pus_M_ta_t_7 = pus_Q_yz*pus_q_x
+        pus_M_ta_t_8 = pus_M_ta_t + pus_M_ta_t_7
+        pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y
+        pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z
+        pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x
+        pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
+        # (M_aa) rotational block of M
+        pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z
+        pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y + pus_M_ta_t_8*pus_q_z
+        pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z
+        pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x
+        pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x
+        pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y
         # (Z_a) rotational part of Z
-        pus_Z_a_t = pus_U_in_base_z*pus_q_in_base_y - pus_U_in_base_y*pus_q_in_base_z
-        pus_Z_a_t_2 = pus_U_in_base_x*pus_q_in_base_z - pus_U_in_base_z*pus_q_in_base_x
-        pus_Z_a_t_3 = pus_U_in_base_y*pus_q_in_base_x - pus_U_in_base_x*pus_q_in_base_y
-        # (pus-w_1) reciprocal vector 1
-        pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t
-        pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t
-        pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t
+        pus_Z_a_t = pus_U_z*pus_q_y - pus_U_y*pus_q_z
+        pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x
+        pus_Z_a_t_3 = pus_U_y*pus_q_x - pus_U_x*pus_q_y
         # (pus-H_a_1) moment of the column's unit force about the platform origin
-        pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5
-        pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3
-        pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4
+        pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y
+        pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
+        pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
-        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
-            * 1.0))
+        ok & m.every(leg, (pus_J_3_t_6 >= 0.0) & (abs(pus_J_3_t_9) > _TOLERANCE * _TOLERANCE *
+            pus_size_t_2) & (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) &
+            (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0))
         )
         sums = m.added(sums, leg, (
-        pus_Q_t_12, pus_Q_t_13, pus_Q_t_14, pus_Q_t_16, pus_Q_t_17, pus_Q_t_19, pus_M_ta_t_3,
+        pus_Q_xx, pus_Q_xy, pus_Q_xz, pus_Q_yy, pus_Q_yz, pus_Q_zz, pus_M_ta_t_3,
             pus_M_ta_t_4, pus_M_ta_t_5, pus_M_ta_t_6, pus_M_ta_t_8, pus_M_ta_t_9,
             pus_M_ta_t_10, pus_M_ta_t_11, pus_M_ta_t_12, pus_M_aa_t, pus_M_aa_t_2,
-            pus_M_aa_t_3, pus_M_aa_t_4, pus_M_aa_t_5, pus_M_aa_t_6, pus_U_in_base_x,
-            pus_U_in_base_y, pus_U_in_base_z, pus_Z_a_t, pus_Z_a_t_2, pus_Z_a_t_3,
+            pus_M_aa_t_3, pus_M_aa_t_4, pus_M_aa_t_5, pus_M_aa_t_6, pus_U_x, pus_U_y, pus_U_z,
+            pus_Z_a_t, pus_Z_a_t_2, pus_Z_a_t_3,
         ))
-        out_H[_H_pus[0][leg]] = -pus_w_1_t_3
-        out_H[_H_pus[1][leg]] = -pus_w_1_t_4
-        out_H[_H_pus[2][leg]] = -pus_w_1_t_5
+        # (pus-w_1) reciprocal vector 1
+        out_H[_H_pus[0][leg]] = pus_w_1_x
+        out_H[_H_pus[1][leg]] = pus_w_1_y
+        out_H[_H_pus[2][leg]] = pus_w_1_z
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_pus[3][leg]] = pus_H_a_1_x
         out_H[_H_pus[4][leg]] = pus_H_a_1_y
         out_H[_H_pus[5][leg]] = pus_H_a_1_z
     (
-    total_pus_xx, total_pus_xy, total_pus_xz, total_pus_yy, total_pus_yz, total_pus_zz,
-        total_pus_xx_2, total_pus_xy_2, total_pus_xz_2, total_pus_yx, total_pus_yy_2,
-        total_pus_yz_2, total_pus_zx, total_pus_zy, total_pus_zz_2, total_pus_xx_3,
-        total_pus_xy_3, total_pus_xz_3, total_pus_yy_3, total_pus_yz_3, total_pus_zz_3,
-        total_pus_x, total_pus_y, total_pus_z, total_pus_x_2, total_pus_y_2, total_pus_z_2,
+    M_tt_pus_xx, M_tt_xy, M_tt_xz, M_tt_pus_yy, M_tt_yz, M_tt_pus_zz, M_ta_xx, M_ta_pus_xy,
+        M_ta_pus_xz, M_ta_pus_yx, M_ta_t, M_ta_pus_yz, M_ta_pus_zx, M_ta_pus_zy, M_ta_zz,
+        M_aa_pus_xx, M_aa_pus_xy, M_aa_pus_xz, M_aa_pus_yy, M_aa_pus_yz, M_aa_pus_zz, Z_t_pus_x,
+        Z_t_pus_y, Z_t_pus_z, Z_a_pus_x, Z_a_pus_y, Z_a_pus_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_pus_xx
-    M_tt_yy = m_star - total_pus_yy
-    M_tt_zz = m_star - total_pus_zz
+    M_tt_xx = M_tt_pus_xx + m_star
+    M_tt_yy = M_tt_pus_yy + m_star
+    M_tt_zz = M_tt_pus_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_pus_xy_2
-    M_ta_xz = total_pus_xz_2 - h_star_in_base_y
-    M_ta_yx = total_pus_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_pus_yz_2
-    M_ta_zx = h_star_in_base_y + total_pus_zx
-    M_ta_zy = -h_star_in_base_x - total_pus_zy
+    M_ta_xy = M_ta_pus_xy + h_star_z
+    M_ta_xz = M_ta_pus_xz - h_star_y
+    M_ta_yx = M_ta_pus_yx - h_star_z
+    M_ta_yz = M_ta_pus_yz + h_star_x
+    M_ta_zx = M_ta_pus_zx + h_star_y
+    M_ta_zy = M_ta_pus_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_pus_xx_3
-    M_aa_xy = J_star_t_9 + total_pus_xy_3
-    M_aa_xz = J_star_t_10 - total_pus_xz_3
-    M_aa_yy = J_star_t_13 - total_pus_yy_3
-    M_aa_yz = J_star_t_15 + total_pus_yz_3
-    M_aa_zz = J_star_t_17 - total_pus_zz_3
+    M_aa_xx = J_star_xx + M_aa_pus_xx
+    M_aa_xy = J_star_xy + M_aa_pus_xy
+    M_aa_xz = J_star_xz + M_aa_pus_xz
+    M_aa_yy = J_star_yy + M_aa_pus_yy
+    M_aa_yz = J_star_yz + M_aa_pus_yz
+    M_aa_zz = J_star_zz + M_aa_pus_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_pus_x
-    Z_t_y = Z_p_y + total_pus_y
-    Z_t_z = Z_p_z + total_pus_z
+    Z_t_x = Z_p_x + Z_t_pus_x
+    Z_t_y = Z_p_y + Z_t_pus_y
+    Z_t_z = Z_p_z + Z_t_pus_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_pus_x_2
-    Z_a_y = Z_q_in_base_y + total_pus_y_2
-    Z_a_z = Z_q_in_base_z + total_pus_z_2
+    Z_a_x = Z_a_pus_x + Z_q_x
+    Z_a_y = Z_a_pus_y + Z_q_y
+    Z_a_z = Z_a_pus_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_pus_xy
-    out_M[6] = -total_pus_xy
-    out_M[2] = -total_pus_xz
-    out_M[12] = -total_pus_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_pus_yz
-    out_M[13] = -total_pus_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_pus_xx_2
-    out_M[18] = total_pus_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_pus_yy_2
-    out_M[25] = -total_pus_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_pus_zz_2
-    out_M[32] = -total_pus_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1846,9 +1916,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -1860,8 +1932,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1901,269 +1974,282 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xx, pus_J_3_xy, pus_J_3_xz,
-            pus_J_3_yz, pus_J_3_zz, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
-            pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
-            pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-            pus_base_point_z, pus_branch_1, pus_branch_2, pus_d_Gamma_3_t, pus_d_Gamma_3_y,
-            pus_d_c_yy, pus_d_phi_3_t, pus_disc_1_t, pus_h_3_x, pus_h_3_y, pus_h_3_z,
+        inv_pus_size_t, pus_J_3_in_spec3_xx, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz,
+            pus_J_3_in_spec3_yz, pus_J_3_in_spec3_zz, pus_base_frame_xx, pus_base_frame_xy,
+            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
+            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
+            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2,
+            pus_d_Gamma_3_in_axes3_y, pus_d_Gamma_3_t, pus_d_c_in_axes3_yy,
+            pus_d_phi_3_in_axes3_xy, pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z,
             pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,
+            pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
+            pus_w_3_in_axes3_y,
         ) = k
-        # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        # (pus-J_3) inertia tensor of link 3 about the connection point
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
-        pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
+        pus_J_3_t = pus_q_x + t_x - pus_base_point_x
+        pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y
+        pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z
+        pus_J_3_t_4 = (
+        pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+            pus_J_3_t_3*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
-        pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
+        pus_J_3_t_5 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_6 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_5
+        pus_J_3_t_7 = -sqrt(pus_J_3_t_6)*pus_branch_1
+        pus_J_3_t_8 = (
+        pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+            pus_J_3_t_3*pus_base_frame_zy
         )
-        # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
-        # (pus-root_2) root, with the sign of the branch
-        pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        pus_J_3_t_9 = pus_J_3_t_7*pus_J_3_t_7 + pus_J_3_t_8*pus_J_3_t_8
+        pus_J_3_t_10 = sqrt(pus_J_3_t_9)*pus_branch_2
+        pus_J_3_t_11 = inv_pus_size_t*pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
         )
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
+        pus_J_3_in_axes2_xz = (
+        pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_11
+        )
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        inv_pus_J_3_t_9 = 1.0/pus_J_3_t_9
+        pus_c_2_t = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_8
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        pus_s_2 = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_7
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_J_3_t_11*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
-        )
-        axis_x_pus_axes3_x = (
-        axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y
-        )
-        axis_x_pus_axes3_y = (
-        axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z
-        )
-        axis_x_pus_axes3_z = (
-        axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
-        )
+        pus_e_1_in_axes3_x = pus_J_3_t_11*pus_s_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
-        inv_pus_v_2_t = 1.0/pus_v_2_t
-        inv_pus_w_2_t = 1.0/pus_w_2_t
-        pus_w_2_t_2 = inv_pus_v_2_t*inv_pus_w_2_t*pus_c_2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        pus_w_2_in_axes3_x = pus_c_2_t*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z
         # (pus-w_3) reciprocal vector 3
-        pus_w_3_t = inv_pus_platform_joint_offset_x*inv_pus_w_2_t*pus_w_1_t
+        pus_e_1_in_axes3_y = pus_e_2_in_axes3_x*pus_s_2
+        pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y
         # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        pus_d_alpha_3_t = inv_pus_v_2_t*pus_s_3
-        pus_d_alpha_3_t_2 = inv_pus_v_2_t*pus_c_3
-        # (pus-L_c_3) moment about joint 3 that accelerates joint 3, per unit
-        pus_L_c_3_r0_y = pus_J_3_xy*pus_s_3 + pus_J_3_yz*pus_c_3
+        pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z
+        pus_d_alpha_3_t = pus_J_3_t_11*pus_w_2_in_axes3_z
         # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        pus_d_Gamma_3_t_2 = inv_pus_v_2_t*pus_L_c_3_r0_y
-        pus_d_Gamma_3_x = (
-        pus_h_3_z - inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_3_t_2 + pus_d_Gamma_3_t*pus_w_1_t)
+        pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_xz*pus_w_2_in_axes3_z
+        pus_d_Gamma_3_in_axes3_x = (
+        pus_h_3_in_spec3_z + pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_3_in_axes3_z -
+            pus_d_Gamma_3_t*pus_e_1_in_axes3_y)
         )
         # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         pus_d_Gamma_2_t = (
-        inv_pus_v_2_t*(pus_s_3*(pus_J_3_xx*pus_s_3 + pus_J_3_xz*pus_c_3) -
-            pus_c_3*(-pus_J_3_xz*pus_s_3 - pus_J_3_zz*pus_c_3))
+        pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*(pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_xz*pus_J_3_t_11) -
+            pus_J_3_t_11*(-pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x -
+            pus_J_3_in_spec3_zz*pus_J_3_t_11))
         )
-        pus_d_Gamma_2_t_2 = inv_pus_platform_joint_offset_x*pus_L_c_3_r0_y
-        pus_d_Gamma_2_x = (
-        -inv_pus_w_2_t*(pus_c_2*pus_d_Gamma_2_t + pus_d_Gamma_2_t_2*pus_w_1_t) - pus_c_3*pus_h_3_y
+        pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_xz*pus_w_3_in_axes3_y
+        pus_d_Gamma_2_in_axes3_x = (
+        pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_2_t - pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) -
+            pus_J_3_t_11*pus_h_3_in_spec3_y
         )
-        pus_d_Gamma_2_y = pus_d_Gamma_2_t_2 - pus_h_3_y*pus_s_3
-        pus_d_Gamma_2_z = pus_d_Gamma_2_t + pus_c_3*pus_h_3_x - pus_h_3_z*pus_s_3
+        pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
+        pus_d_Gamma_2_in_axes3_z = (
+        pus_d_Gamma_2_t + pus_J_3_t_11*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
+        )
         # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        pus_d_c_xx = (
-        pus_d_Gamma_2_x*pus_w_2_t_2 + pus_d_Gamma_3_x*pus_w_3_t + pus_h_3_z*pus_w_3_t -
-            inv_pus_w_2_t*inv_pus_w_2_t*pus_link1_mass - pus_c_3*pus_h_3_y*pus_w_2_t_2
+        pus_d_c_in_axes3_xx = (
+        pus_J_3_t_11*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+            pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
+            pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x
         )
-        pus_d_c_xy = pus_d_Gamma_2_y*pus_w_2_t_2 + pus_d_Gamma_3_y*pus_w_3_t - pus_d_phi_3_t
-        pus_d_c_xz = (
-        pus_d_Gamma_2_z*pus_w_2_t_2 + pus_d_Gamma_3_t_2*pus_w_3_t + pus_d_alpha_3_t_2*pus_h_3_y
+        pus_d_c_in_axes3_xy = (
+        -pus_d_phi_3_in_axes3_xy - pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_x
         )
-        pus_d_c_yz = pus_d_alpha_3_t*pus_h_3_y - inv_pus_platform_joint_offset_x*pus_d_Gamma_3_t_2
+        pus_d_c_in_axes3_xz = (
+        pus_d_alpha_3_t*pus_h_3_in_spec3_y - pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
+            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x
+        )
+        pus_d_c_in_axes3_yz = (
+        pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y - pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y
+        )
         # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
-        pus_Q_t = pus_d_c_xx - pus_d_c_yy
-        pus_Q_t_2 = 0.5*pus_Q_t
-        pus_Q_t_3 = (
-        pus_d_c_xx + inv_pus_v_2_t*pus_d_Gamma_2_z + pus_d_alpha_3_t_2*pus_h_3_x -
-            pus_d_alpha_3_t*pus_h_3_z
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_Q_t = pus_c_2_t*pus_e_2_in_axes3_x
+        axis_y_pus_axes3_x = (
+        pus_Q_t*pus_base_frame_xy + pus_base_frame_xx*pus_e_1_in_axes3_y -
+            pus_J_3_t_11*pus_base_frame_xz
         )
-        pus_Q_t_4 = 0.5*pus_Q_t_3
-        pus_Q_t_5 = (
-        axis_x_pus_axes3_x*pus_d_c_xy + axis_z_pus_axes3_in_base_x*pus_d_c_yz -
-            axis_y_pus_axes3_in_base_x*pus_Q_t_2
+        axis_y_pus_axes3_y = (
+        pus_Q_t*pus_base_frame_yy + pus_base_frame_yx*pus_e_1_in_axes3_y -
+            pus_J_3_t_11*pus_base_frame_yz
         )
+        axis_y_pus_axes3_z = (
+        pus_Q_t*pus_base_frame_zy + pus_base_frame_zx*pus_e_1_in_axes3_y -
+            pus_J_3_t_11*pus_base_frame_zz
+        )
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
+        pus_Q_t_2 = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy
+        pus_Q_t_3 = 0.5*pus_Q_t_2
+        pus_Q_t_4 = (
+        pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
+            pus_d_alpha_3_t*pus_h_3_in_spec3_x - pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z
+        )
+        pus_Q_t_5 = 0.5*pus_Q_t_4
         pus_Q_t_6 = (
-        axis_x_pus_axes3_y*pus_d_c_xy + axis_z_pus_axes3_in_base_y*pus_d_c_yz -
-            axis_y_pus_axes3_in_base_y*pus_Q_t_2
+        axis_x_pus_axes3_x*pus_d_c_in_axes3_xy + axis_z_pus_axes3_x*pus_d_c_in_axes3_yz -
+            axis_y_pus_axes3_x*pus_Q_t_3
         )
         pus_Q_t_7 = (
-        axis_x_pus_axes3_z*pus_d_c_xy + axis_z_pus_axes3_in_base_z*pus_d_c_yz -
-            axis_y_pus_axes3_in_base_z*pus_Q_t_2
+        axis_x_pus_axes3_y*pus_d_c_in_axes3_xy + axis_z_pus_axes3_y*pus_d_c_in_axes3_yz -
+            axis_y_pus_axes3_y*pus_Q_t_3
         )
-        pus_Q_t_8 = axis_z_pus_axes3_in_base_x*pus_Q_t_4 - axis_x_pus_axes3_x*pus_d_c_xz
-        pus_Q_t_9 = axis_z_pus_axes3_in_base_y*pus_Q_t_4 - axis_x_pus_axes3_y*pus_d_c_xz
-        pus_Q_t_10 = axis_z_pus_axes3_in_base_z*pus_Q_t_4 - axis_x_pus_axes3_z*pus_d_c_xz
-        pus_Q_t_11 = axis_y_pus_axes3_in_base_x*pus_Q_t_5 - axis_z_pus_axes3_in_base_x*pus_Q_t_8
-        pus_Q_t_12 = 2.0*pus_Q_t_11 + pus_d_c_xx
-        pus_Q_t_13 = (
-        axis_y_pus_axes3_in_base_x*pus_Q_t_6 + axis_y_pus_axes3_in_base_y*pus_Q_t_5 -
-            axis_z_pus_axes3_in_base_x*pus_Q_t_9 - axis_z_pus_axes3_in_base_y*pus_Q_t_8
+        pus_Q_t_8 = (
+        axis_x_pus_axes3_z*pus_d_c_in_axes3_xy + axis_z_pus_axes3_z*pus_d_c_in_axes3_yz -
+            axis_y_pus_axes3_z*pus_Q_t_3
         )
-        pus_Q_t_14 = (
-        axis_y_pus_axes3_in_base_x*pus_Q_t_7 + axis_y_pus_axes3_in_base_z*pus_Q_t_5 -
-            axis_z_pus_axes3_in_base_x*pus_Q_t_10 - axis_z_pus_axes3_in_base_z*pus_Q_t_8
+        pus_Q_t_9 = axis_z_pus_axes3_x*pus_Q_t_5 - axis_x_pus_axes3_x*pus_d_c_in_axes3_xz
+        pus_Q_t_10 = axis_z_pus_axes3_y*pus_Q_t_5 - axis_x_pus_axes3_y*pus_d_c_in_axes3_xz
+        pus_Q_t_11 = axis_z_pus_axes3_z*pus_Q_t_5 - axis_x_pus_axes3_z*pus_d_c_in_axes3_xz
+        pus_Q_t_12 = axis_y_pus_axes3_x*pus_Q_t_6 - axis_z_pus_axes3_x*pus_Q_t_9
+        pus_Q_xx = -2.0*pus_Q_t_12 - pus_d_c_in_axes3_xx
+        pus_Q_xy = (
+        axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_y*pus_Q_t_9 -
+            axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_y*pus_Q_t_6
         )
-        pus_Q_t_15 = axis_y_pus_axes3_in_base_y*pus_Q_t_6 - axis_z_pus_axes3_in_base_y*pus_Q_t_9
-        pus_Q_t_16 = 2.0*pus_Q_t_15 + pus_d_c_xx
-        pus_Q_t_17 = (
-        axis_y_pus_axes3_in_base_y*pus_Q_t_7 + axis_y_pus_axes3_in_base_z*pus_Q_t_6 -
-            axis_z_pus_axes3_in_base_y*pus_Q_t_10 - axis_z_pus_axes3_in_base_z*pus_Q_t_9
+        pus_Q_xz = (
+        axis_z_pus_axes3_x*pus_Q_t_11 + axis_z_pus_axes3_z*pus_Q_t_9 -
+            axis_y_pus_axes3_x*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_6
         )
-        pus_Q_t_18 = axis_y_pus_axes3_in_base_z*pus_Q_t_7 - axis_z_pus_axes3_in_base_z*pus_Q_t_10
-        pus_Q_t_19 = 2.0*pus_Q_t_18 + pus_d_c_xx
+        pus_Q_t_13 = axis_y_pus_axes3_y*pus_Q_t_7 - axis_z_pus_axes3_y*pus_Q_t_10
+        pus_Q_yy = -2.0*pus_Q_t_13 - pus_d_c_in_axes3_xx
+        pus_Q_yz = (
+        axis_z_pus_axes3_y*pus_Q_t_11 + axis_z_pus_axes3_z*pus_Q_t_10 -
+            axis_y_pus_axes3_y*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_7
+        )
+        pus_Q_t_14 = axis_y_pus_axes3_z*pus_Q_t_8 - axis_z_pus_axes3_z*pus_Q_t_11
+        pus_Q_zz = -2.0*pus_Q_t_14 - pus_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        pus_M_ta_t = pus_Q_t_13*pus_q_in_base_z
-        pus_M_ta_t_2 = pus_Q_t_14*pus_q_in_base_y
-        pus_M_ta_t_3 = pus_M_ta_t - pus_M_ta_t_2
-        pus_M_ta_t_4 = pus_Q_t_12*pus_q_in_base_z - pus_Q_t_14*pus_q_in_base_x
-        pus_M_ta_t_5 = pus_Q_t_12*pus_q_in_base_y - pus_Q_t_13*pus_q_in_base_x
-        pus_M_ta_t_6 = pus_Q_t_16*pus_q_in_base_z - pus_Q_t_17*pus_q_in_base_y
-        pus_M_ta_t_7 = pus_Q_t_17*pus_q_in_base_x
-        pus_M_ta_t_8 = pus_M_ta_t - pus_M_ta_t_7
-        pus_M_ta_t_9 = pus_Q_t_13*pus_q_in_base_y - pus_Q_t_16*pus_q_in_base_x
-        pus_M_ta_t_10 = pus_Q_t_17*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_y
-        pus_M_ta_t_11 = pus_Q_t_14*pus_q_in_base_z - pus_Q_t_19*pus_q_in_base_x
+        pus_M_ta_t = -pus_Q_xy*pus_q_z
+        pus_M_ta_t_2 = pus_Q_xz*pus_q_y
+        pus_M_ta_t_3 = pus_M_ta_t + pus_M_ta_t_2
+        pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x
+        pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y
+        pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z
+        pus_M_ta_t_7 = pus_Q_yz*pus_q_x
+        pus_M_ta_t_8 = pus_M_ta_t + pus_M_ta_t_7
+        pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y
+        pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z
+        pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x
         pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2
         # (M_aa) rotational block of M
-        pus_M_aa_t = pus_M_ta_t_6*pus_q_in_base_z - pus_M_ta_t_10*pus_q_in_base_y
-        pus_M_aa_t_2 = pus_M_ta_t_8*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_y
-        pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_in_base_y + pus_M_ta_t_9*pus_q_in_base_z
-        pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_in_base_z - pus_M_ta_t_11*pus_q_in_base_x
-        pus_M_aa_t_5 = pus_M_ta_t_12*pus_q_in_base_x + pus_M_ta_t_5*pus_q_in_base_z
-        pus_M_aa_t_6 = pus_M_ta_t_5*pus_q_in_base_y - pus_M_ta_t_9*pus_q_in_base_x
+        pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z
+        pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y + pus_M_ta_t_8*pus_q_z
+        pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z
+        pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x
+        pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x
+        pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y
         ok = (
-        ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
-            * 1.0))
+        ok & m.every(leg, (pus_J_3_t_6 >= 0.0) & (abs(pus_J_3_t_9) > _TOLERANCE * _TOLERANCE *
+            pus_size_t_2) & (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) &
+            (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0))
         )
         sums = m.added(sums, leg, (
-        pus_Q_t_12, pus_Q_t_13, pus_Q_t_14, pus_Q_t_16, pus_Q_t_17, pus_Q_t_19, pus_M_ta_t_3,
+        pus_Q_xx, pus_Q_xy, pus_Q_xz, pus_Q_yy, pus_Q_yz, pus_Q_zz, pus_M_ta_t_3,
             pus_M_ta_t_4, pus_M_ta_t_5, pus_M_ta_t_6, pus_M_ta_t_8, pus_M_ta_t_9,
             pus_M_ta_t_10, pus_M_ta_t_11, pus_M_ta_t_12, pus_M_aa_t, pus_M_aa_t_2,
             pus_M_aa_t_3, pus_M_aa_t_4, pus_M_aa_t_5, pus_M_aa_t_6,
         ))
     (
-    total_pus_xx, total_pus_xy, total_pus_xz, total_pus_yy, total_pus_yz, total_pus_zz,
-        total_pus_xx_2, total_pus_xy_2, total_pus_xz_2, total_pus_yx, total_pus_yy_2,
-        total_pus_yz_2, total_pus_zx, total_pus_zy, total_pus_zz_2, total_pus_xx_3,
-        total_pus_xy_3, total_pus_xz_3, total_pus_yy_3, total_pus_yz_3, total_pus_zz_3,
+    M_tt_pus_xx, M_tt_xy, M_tt_xz, M_tt_pus_yy, M_tt_yz, M_tt_pus_zz, M_ta_xx, M_ta_pus_xy,
+        M_ta_pus_xz, M_ta_pus_yx, M_ta_t, M_ta_pus_yz, M_ta_pus_zx, M_ta_pus_zy, M_ta_zz,
+        M_aa_pus_xx, M_aa_pus_xy, M_aa_pus_xz, M_aa_pus_yy, M_aa_pus_yz, M_aa_pus_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_pus_xx
-    M_tt_yy = m_star - total_pus_yy
-    M_tt_zz = m_star - total_pus_zz
+    M_tt_xx = M_tt_pus_xx + m_star
+    M_tt_yy = M_tt_pus_yy + m_star
+    M_tt_zz = M_tt_pus_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_pus_xy_2
-    M_ta_xz = total_pus_xz_2 - h_star_in_base_y
-    M_ta_yx = total_pus_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_pus_yz_2
-    M_ta_zx = h_star_in_base_y + total_pus_zx
-    M_ta_zy = -h_star_in_base_x - total_pus_zy
+    M_ta_xy = M_ta_pus_xy + h_star_z
+    M_ta_xz = M_ta_pus_xz - h_star_y
+    M_ta_yx = M_ta_pus_yx - h_star_z
+    M_ta_yz = M_ta_pus_yz + h_star_x
+    M_ta_zx = M_ta_pus_zx + h_star_y
+    M_ta_zy = M_ta_pus_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_pus_xx_3
-    M_aa_xy = J_star_t_9 + total_pus_xy_3
-    M_aa_xz = J_star_t_10 - total_pus_xz_3
-    M_aa_yy = J_star_t_13 - total_pus_yy_3
-    M_aa_yz = J_star_t_15 + total_pus_yz_3
-    M_aa_zz = J_star_t_17 - total_pus_zz_3
+    M_aa_xx = J_star_xx + M_aa_pus_xx
+    M_aa_xy = J_star_xy + M_aa_pus_xy
+    M_aa_xz = J_star_xz + M_aa_pus_xz
+    M_aa_yy = J_star_yy + M_aa_pus_yy
+    M_aa_yz = J_star_yz + M_aa_pus_yz
+    M_aa_zz = J_star_zz + M_aa_pus_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_pus_xy
-    out_M[6] = -total_pus_xy
-    out_M[2] = -total_pus_xz
-    out_M[12] = -total_pus_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_pus_yz
-    out_M[13] = -total_pus_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_pus_xx_2
-    out_M[18] = total_pus_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_pus_yy_2
-    out_M[25] = -total_pus_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_pus_zz_2
-    out_M[32] = -total_pus_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2181,8 +2267,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2235,268 +2322,305 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
-            pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx, pus_base_frame_xy,
-            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
-            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-            pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x, pus_h_3_y, pus_h_3_z, pus_link1_mass,
+        inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
+            pus_Sigma_3_in_axes3_xx, pus_Sigma_3_in_axes3_yy, pus_Sigma_3_in_axes3_zz,
+            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
+            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
+            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+            pus_branch_2, pus_g_in_axes0_x, pus_g_in_axes0_y, pus_g_in_axes0_z,
+            pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z, pus_link1_mass,
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-            pus_platform_point_z, pus_size, pus_size_t,
+            pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
         # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-x_2) from the origin of joint 2 to the connection point
+        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
-        # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
+        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
-        )
-        axis_x_pus_axes3_x = (
-        axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y
-        )
-        axis_x_pus_axes3_y = (
-        axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z
-        )
-        axis_x_pus_axes3_z = (
-        axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
-        )
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
-        inv_pus_v_2_t = 1.0/pus_v_2_t
-        inv_pus_w_2_t = 1.0/pus_w_2_t
         # (pus-S_dot) velocity of the connection point
-        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
-        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
-        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
+        pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
+        pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x
         pus_S_dot_x = pus_S_dot_t + t_dot_x
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
-        # (pus-qd_3) rate of joint 3
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
+        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        # (pus-qd_1) rate of joint 1
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
+        pus_qd_1_t = pus_c_2_t*pus_s_3
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
+            pus_base_frame_xz*pus_c_3_t
+        )
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
+            pus_base_frame_yz*pus_c_3_t
+        )
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
+            pus_base_frame_zz*pus_c_3_t
+        )
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
         pus_qd_1 = (
-        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+        pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
             axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        pus_qd_3_t = (
-        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
-            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
-        )
-        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
-        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1)
+        pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
         )
+        # (pus-qd_3) rate of joint 3
+        pus_qd_3_t = (
+        axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1
+        )
+        pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_t = pus_qd_2*pus_s_3
-        pus_omega_2_t_2 = pus_c_3*pus_qd_2
-        # (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3
-        pus_zeta_3_y = pus_omega_2_t*pus_qd_3
+        pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3
+        pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2
+        # (pus-W_3) centripetal tensor of link 3
+        pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
+        pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
+        pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y
         # (pus-u_1) centripetal acceleration of the connection point
         pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
         pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
         pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
-        # (pus-W_3) centripetal tensor of link 3
-        pus_W_3_t = pus_omega_2_t*pus_omega_2_t
-        pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2
-        pus_W_3_t_3 = pus_qd_3*pus_qd_3
-        pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2
-        # (pus-bias) acceleration of the connection point at zero joint accelerations
-        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
-        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_platform_joint_offset_x*pus_zeta_3_y
-        # (pus-u_1) centripetal acceleration of the connection point
-        pus_u_1_tip_x = (
+        pus_u_1_in_axes3_x = (
         axis_x_pus_axes3_x*pus_u_1_x + axis_x_pus_axes3_y*pus_u_1_y + axis_x_pus_axes3_z*pus_u_1_z
         )
-        pus_u_1_tip_y = (
-        axis_y_pus_axes3_in_base_x*pus_u_1_x + axis_y_pus_axes3_in_base_y*pus_u_1_y +
-            axis_y_pus_axes3_in_base_z*pus_u_1_z
+        pus_u_1_in_axes3_y = (
+        axis_y_pus_axes3_x*pus_u_1_x + axis_y_pus_axes3_y*pus_u_1_y + axis_y_pus_axes3_z*pus_u_1_z
         )
-        pus_u_1_tip_z = (
-        axis_z_pus_axes3_in_base_x*pus_u_1_x + axis_z_pus_axes3_in_base_y*pus_u_1_y +
-            axis_z_pus_axes3_in_base_z*pus_u_1_z
+        pus_u_1_in_axes3_z = (
+        axis_z_pus_axes3_x*pus_u_1_x + axis_z_pus_axes3_y*pus_u_1_y + axis_z_pus_axes3_z*pus_u_1_z
+        )
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_in_axes3_z = (
+        pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        pus_rel_o_x = pus_u_1_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
-        pus_rel_o_y = pus_u_1_tip_y + pus_bias_t*pus_omega_2_t
-        pus_rel_o_z = pus_u_1_tip_z - pus_bias_z
+        pus_rel_o_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_rel_o_in_axes3_x = (
+        pus_u_1_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_o_t + pus_qd_3*pus_qd_3_t
+        )
+        pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t
+        pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z
+        # (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x
+        # (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z - pus_c_2_t*pus_qdd_1_o)
         # (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        pus_qdd_1_o = inv_pus_w_2_t*pus_rel_o_x
-        pus_qdd_3_o = inv_pus_platform_joint_offset_x*(pus_qdd_1_o*pus_w_1_t - pus_rel_o_y)
-        pus_qdd_2_o = inv_pus_v_2_t*(pus_c_2*pus_qdd_1_o - pus_rel_o_z)
+        pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
         # (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        pus_alpha_2_o_t = pus_qdd_2_o*pus_s_3
-        pus_alpha_2_o_t_2 = pus_c_3*pus_qdd_2_o
+        pus_alpha_2_o_t = pus_qdd_2_o_t*pus_s_3
+        pus_alpha_2_o_in_axes3_y = pus_c_3_t*pus_qdd_2_o_t
         # (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        pus_alpha_3_o_x = -pus_alpha_2_o_t - pus_zeta_3_x
-        pus_alpha_3_o_y = pus_alpha_2_o_t_2 - pus_zeta_3_y
+        pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
+        pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
         # (pus-B_3_o) remainder of the acceleration tensor of link 3
-        pus_B_3_o_xy = pus_qdd_3_o - pus_W_3_xy
-        pus_B_3_o_yx = -pus_W_3_xy - pus_qdd_3_o
-        pus_B_3_o_zx = pus_zeta_3_y - pus_alpha_3_o_y
-        pus_B_3_o_zy = pus_alpha_3_o_x - pus_zeta_3_x
-        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y
-        pus_acc_3_o_x = pus_u_1_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3
-        pus_acc_3_o_y = pus_u_1_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3
-        pus_acc_3_o_z = pus_u_1_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2
-        # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        pus_mu_3_o_x = (
-        pus_B_3_o_yx*pus_J_3_xy + pus_B_3_o_zx*pus_J_3_xz + pus_B_3_o_zy*pus_Sigma_3_yy -
-            pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) - pus_Sigma_3_zz*pus_alpha_2_o_t -
-            pus_acc_3_o_y*pus_h_3_y - pus_acc_3_o_z*pus_h_3_z
-        )
-        pus_mu_3_o_y = (
-        pus_B_3_o_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_o_t_2 + pus_acc_3_o_x*pus_h_3_y -
-            pus_B_3_o_zx*pus_Sigma_3_xx - pus_B_3_o_zy*pus_J_3_xz - pus_J_3_xy*(pus_W_3_t -
-            pus_W_3_t_3) - pus_acc_3_o_z*pus_h_3_x
-        )
-        pus_mu_3_o_z = (
-        pus_B_3_o_yx*pus_Sigma_3_xx + pus_acc_3_o_x*pus_h_3_z + pus_acc_3_o_y*pus_h_3_x -
-            pus_B_3_o_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_o_t - pus_J_3_xz*(pus_W_3_t -
-            pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_o_t_2
-        )
+        pus_B_3_o_in_axes3_xy = pus_W_3_in_axes3_xy - pus_qdd_3_o
+        pus_B_3_o_in_axes3_yx = pus_W_3_in_axes3_xy + pus_qdd_3_o
+        pus_B_3_o_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_o_in_axes3_y
+        pus_B_3_o_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_o_in_axes3_x
         # (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        pus_acc_1_o_x = -pus_g_r0_x - pus_qdd_1_o
+        pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x
+        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        pus_acc_3_o_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_acc_3_o_in_axes3_x = (
+        pus_u_1_in_axes3_x + pus_acc_3_o_t*pus_c_3_t - pus_g_in_axes0_z*pus_s_3
+        )
+        pus_acc_3_o_in_axes3_y = (
+        pus_u_1_in_axes3_y + pus_acc_3_o_t*pus_s_3 + pus_c_3_t*pus_g_in_axes0_z
+        )
+        pus_acc_3_o_in_axes3_z = (
+        pus_u_1_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x - pus_g_in_axes0_y*pus_s_2
+        )
+        # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
+        pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
+        pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3
+        pus_mu_3_o_in_axes3_x = (
+        pus_B_3_o_in_axes3_yx*pus_J_3_in_spec3_xy + pus_B_3_o_in_axes3_zx*pus_J_3_in_spec3_xz +
+            pus_B_3_o_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_o_t_2 -
+            pus_mu_3_o_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_t -
+            pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_z
+        )
+        pus_mu_3_o_in_axes3_y = (
+        pus_B_3_o_in_axes3_xy*pus_J_3_in_spec3_yz +
+            pus_Sigma_3_in_axes3_zz*pus_alpha_2_o_in_axes3_y +
+            pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_y -
+            pus_B_3_o_in_axes3_zx*pus_Sigma_3_in_axes3_xx -
+            pus_B_3_o_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_o_t -
+            pus_mu_3_o_t_3) - pus_acc_3_o_in_axes3_z*pus_h_3_in_spec3_x
+        )
+        pus_mu_3_o_in_axes3_z = (
+        pus_B_3_o_in_axes3_yx*pus_Sigma_3_in_axes3_xx + pus_acc_3_o_in_axes3_x*pus_h_3_in_spec3_z
+            + pus_acc_3_o_in_axes3_y*pus_h_3_in_spec3_x -
+            pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t -
+            pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
+            pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y
+        )
         # (pus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        pus_G_o_t = inv_pus_v_2_t*(pus_mu_3_o_x*pus_s_3 - pus_c_3*pus_mu_3_o_y)
-        pus_G_o_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_o_z
+        pus_G_o_in_axes3_z = (
+        pus_w_2_in_axes3_z*(pus_mu_3_o_in_axes3_x*pus_s_3 - pus_c_3_t*pus_mu_3_o_in_axes3_y)
+        )
+        pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        pus_c_o_x = (
-        inv_pus_w_2_t*(pus_G_o_t*pus_c_2 + pus_G_o_t_2*pus_w_1_t + pus_acc_1_o_x*pus_link1_mass) +
-            pus_B_3_o_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 + pus_W_3_t_3) -
-            pus_alpha_2_o_t_2*pus_h_3_y
+        pus_c_o_in_axes3_x = (
+        pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 +
+            pus_mu_3_o_t_3) - pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_w_1_in_axes3_x*(pus_G_o_in_axes3_z*pus_c_2_t +
+            pus_acc_1_o_in_axes0_x*pus_link1_mass - pus_G_o_in_axes3_y*pus_e_1_in_axes3_y)
         )
-        pus_c_o_y = (
-        -pus_G_o_t_2 - pus_B_3_o_yx*pus_h_3_x - pus_alpha_2_o_t*pus_h_3_y - pus_h_3_z*(pus_W_3_t +
-            pus_W_3_t_3)
+        pus_c_o_in_axes3_y = (
+        -pus_G_o_in_axes3_y - pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_o_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_o_t +
+            pus_mu_3_o_t_3)
         )
-        pus_c_o_z = (
-        pus_B_3_o_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_o_t -
-            pus_B_3_o_zx*pus_h_3_x
+        pus_c_o_in_axes3_z = (
+        pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_o_t +
+            pus_mu_3_o_t_2) - pus_G_o_in_axes3_z - pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
         )
         # (pus-U) velocity and gravity terms of the leg force
-        pus_U_in_base_x = (
-        -axis_x_pus_axes3_x*pus_c_o_x - axis_y_pus_axes3_in_base_x*pus_c_o_y -
-            axis_z_pus_axes3_in_base_x*pus_c_o_z
+        pus_U_x = (
+        -axis_x_pus_axes3_x*pus_c_o_in_axes3_x - axis_y_pus_axes3_x*pus_c_o_in_axes3_y -
+            axis_z_pus_axes3_x*pus_c_o_in_axes3_z
         )
-        pus_U_in_base_y = (
-        -axis_x_pus_axes3_y*pus_c_o_x - axis_y_pus_axes3_in_base_y*pus_c_o_y -
-            axis_z_pus_axes3_in_base_y*pus_c_o_z
+        pus_U_y = (
+        -axis_x_pus_axes3_y*pus_c_o_in_axes3_x - axis_y_pus_axes3_y*pus_c_o_in_axes3_y -
+            axis_z_pus_axes3_y*pus_c_o_in_axes3_z
         )
-        pus_U_in_base_z = (
-        -axis_x_pus_axes3_z*pus_c_o_x - axis_y_pus_axes3_in_base_z*pus_c_o_y -
-            axis_z_pus_axes3_in_base_z*pus_c_o_z
+        pus_U_z = (
+        -axis_x_pus_axes3_z*pus_c_o_in_axes3_x - axis_y_pus_axes3_z*pus_c_o_in_axes3_y -
+            axis_z_pus_axes3_z*pus_c_o_in_axes3_z
         )
         # (Z_a) rotational part of Z
-        pus_Z_a_t = pus_U_in_base_z*pus_q_in_base_y - pus_U_in_base_y*pus_q_in_base_z
-        pus_Z_a_t_2 = pus_U_in_base_x*pus_q_in_base_z - pus_U_in_base_z*pus_q_in_base_x
-        pus_Z_a_t_3 = pus_U_in_base_y*pus_q_in_base_x - pus_U_in_base_x*pus_q_in_base_y
+        pus_Z_a_t = pus_U_z*pus_q_y - pus_U_y*pus_q_z
+        pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x
+        pus_Z_a_t_3 = pus_U_y*pus_q_x - pus_U_x*pus_q_y
         ok = (
         ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
-            * 1.0))
+            pus_size_t_2) & (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) &
+            (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0))
         )
         sums = m.added(sums, leg, (
-        pus_U_in_base_x, pus_U_in_base_y, pus_U_in_base_z, pus_Z_a_t, pus_Z_a_t_2,
-            pus_Z_a_t_3,
+        pus_U_x, pus_U_y, pus_U_z, pus_Z_a_t, pus_Z_a_t_2, pus_Z_a_t_3,
         ))
-    total_pus_x, total_pus_y, total_pus_z, total_pus_x_2, total_pus_y_2, total_pus_z_2 = sums
+    Z_t_pus_x, Z_t_pus_y, Z_t_pus_z, Z_a_pus_x, Z_a_pus_y, Z_a_pus_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_pus_x
-    Z_t_y = Z_p_y + total_pus_y
-    Z_t_z = Z_p_z + total_pus_z
+    Z_t_x = Z_p_x + Z_t_pus_x
+    Z_t_y = Z_p_y + Z_t_pus_y
+    Z_t_z = Z_p_z + Z_t_pus_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_pus_x_2
-    Z_a_y = Z_q_in_base_y + total_pus_y_2
-    Z_a_z = Z_q_in_base_z + total_pus_z_2
+    Z_a_x = Z_a_pus_x + Z_q_x
+    Z_a_y = Z_a_pus_y + Z_q_y
+    Z_a_z = Z_a_pus_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2546,97 +2670,98 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
             pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
             pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-            pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-            pus_platform_point_z, pus_size_t,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_platform_joint_offset_x,
+            pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size_t,
+            pus_size_t_2,
         ) = k
         # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-x_2) from the origin of joint 2 to the connection point
+        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
+        pus_w_1_t = pus_c_2_t*pus_s_3
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_base_frame_xz*pus_c_3_t
         )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_base_frame_yz*pus_c_3_t
         )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_base_frame_zz*pus_c_3_t
         )
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
-        inv_pus_w_2_t = 1.0/pus_w_2_t
-        # (pus-w_1) reciprocal vector 1
-        pus_w_1_t_3 = (
-        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y)
+        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        pus_w_1_x = (
+        pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y)
         )
-        pus_w_1_t_4 = (
-        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z)
+        pus_w_1_y = (
+        pus_w_1_in_axes3_x*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z)
         )
-        pus_w_1_t_5 = (
-        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x)
+        pus_w_1_z = (
+        pus_w_1_in_axes3_x*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x)
         )
         # (pus-H_a_1) moment of the column's unit force about the platform origin
-        pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5
-        pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3
-        pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4
+        pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y
+        pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
+        pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
         ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t) & (abs(-pus_w_2_t) > _TOLERANCE * 1.0))
+            pus_size_t_2) & (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0))
         )
-        out_H[_H_pus[0][leg]] = -pus_w_1_t_3
-        out_H[_H_pus[1][leg]] = -pus_w_1_t_4
-        out_H[_H_pus[2][leg]] = -pus_w_1_t_5
+        # (pus-w_1) reciprocal vector 1
+        out_H[_H_pus[0][leg]] = pus_w_1_x
+        out_H[_H_pus[1][leg]] = pus_w_1_y
+        out_H[_H_pus[2][leg]] = pus_w_1_z
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_pus[3][leg]] = pus_H_a_1_x
         out_H[_H_pus[4][leg]] = pus_H_a_1_y
         out_H[_H_pus[5][leg]] = pus_H_a_1_z
@@ -2648,8 +2773,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2715,318 +2841,349 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
-            pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx, pus_base_frame_xy,
-            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
-            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-            pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x, pus_h_3_y, pus_h_3_z, pus_link1_mass,
+        inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
+            pus_Sigma_3_in_axes3_xx, pus_Sigma_3_in_axes3_yy, pus_Sigma_3_in_axes3_zz,
+            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
+            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
+            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+            pus_branch_2, pus_g_in_axes0_x, pus_g_in_axes0_y, pus_g_in_axes0_z,
+            pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z, pus_link1_mass,
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-            pus_platform_point_z, pus_size, pus_size_t,
+            pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
         # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-x_2) from the origin of joint 2 to the connection point
+        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
-        # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
+        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
-        )
-        axis_x_pus_axes3_x = (
-        axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y
-        )
-        axis_x_pus_axes3_y = (
-        axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z
-        )
-        axis_x_pus_axes3_z = (
-        axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
-        )
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
-        inv_pus_v_2_t = 1.0/pus_v_2_t
-        inv_pus_w_2_t = 1.0/pus_w_2_t
         # (pus-S_dot) velocity of the connection point
-        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
-        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
-        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
+        pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
+        pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x
         pus_S_dot_x = pus_S_dot_t + t_dot_x
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
-        # (pus-qd_3) rate of joint 3
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
+        pus_w_1_t = pus_c_2_t*pus_s_3
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_base_frame_xz*pus_c_3_t
+        )
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_base_frame_yz*pus_c_3_t
+        )
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_base_frame_zz*pus_c_3_t
+        )
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
+        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
+        pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
+        pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        # (pus-qd_1) rate of joint 1
         pus_qd_1 = (
-        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+        pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
             axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        pus_qd_3_t = (
-        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
-            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
-        )
-        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
-        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1)
+        pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
         )
+        # (pus-qd_3) rate of joint 3
+        pus_qd_3_t = (
+        axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1
+        )
+        pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_t = pus_qd_2*pus_s_3
-        pus_omega_2_t_2 = pus_c_3*pus_qd_2
-        # (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3
-        pus_zeta_3_y = pus_omega_2_t*pus_qd_3
+        pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3
+        pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
-        pus_W_3_t = pus_omega_2_t*pus_omega_2_t
-        pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2
-        pus_W_3_t_3 = pus_qd_3*pus_qd_3
-        pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2
-        # (pus-bias) acceleration of the connection point at zero joint accelerations
-        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
-        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_platform_joint_offset_x*pus_zeta_3_y
-        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y
-        # (pus-w_1) reciprocal vector 1
-        pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t
-        pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t
-        pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t
-        # (pus-H_a_1) moment of the column's unit force about the platform origin
-        pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5
-        pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3
-        pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4
+        pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
+        pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
+        pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y
         # (pus-a_p) acceleration of the connection point without its centripetal part
-        pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y
-        pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z
-        pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x
+        pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y
+        pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z
+        pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x
         # (pus-S_ddot) acceleration of the connection point
         pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
         pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
         pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
-        pus_S_ddot_tip_x = (
+        pus_S_ddot_in_axes3_x = (
         axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
             axis_x_pus_axes3_z*pus_S_ddot_z
         )
-        pus_S_ddot_tip_y = (
-        axis_y_pus_axes3_in_base_x*pus_S_ddot_x + axis_y_pus_axes3_in_base_y*pus_S_ddot_y +
-            axis_y_pus_axes3_in_base_z*pus_S_ddot_z
+        pus_S_ddot_in_axes3_y = (
+        axis_y_pus_axes3_x*pus_S_ddot_x + axis_y_pus_axes3_y*pus_S_ddot_y +
+            axis_y_pus_axes3_z*pus_S_ddot_z
         )
-        pus_S_ddot_tip_z = (
-        axis_z_pus_axes3_in_base_x*pus_S_ddot_x + axis_z_pus_axes3_in_base_y*pus_S_ddot_y +
-            axis_z_pus_axes3_in_base_z*pus_S_ddot_z
+        pus_S_ddot_in_axes3_z = (
+        axis_z_pus_axes3_x*pus_S_ddot_x + axis_z_pus_axes3_y*pus_S_ddot_y +
+            axis_z_pus_axes3_z*pus_S_ddot_z
+        )
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_in_axes3_z = (
+        pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel) acceleration of the connection point left to the joint accelerations
-        pus_rel_x = pus_S_ddot_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
-        pus_rel_y = pus_S_ddot_tip_y + pus_bias_t*pus_omega_2_t
-        pus_rel_z = pus_S_ddot_tip_z - pus_bias_z
+        pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_rel_in_axes3_x = (
+        pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t + pus_qd_3*pus_qd_3_t
+        )
+        pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t
+        pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z
         # (pus-qdd_1) acceleration of joint 1
-        pus_qdd_1 = inv_pus_w_2_t*pus_rel_x
-        pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y)
-        pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z)
-        # (pus-acc_3) acceleration of the reference point of link 3, less gravity
-        pus_acc_3_x = pus_S_ddot_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3
-        pus_acc_3_y = pus_S_ddot_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3
-        pus_acc_3_z = pus_S_ddot_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2
+        pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
+        # (pus-qdd_2) acceleration of joint 2
+        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1)
+        # (pus-qdd_3) acceleration of joint 3
+        pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
-        pus_alpha_2_t = pus_qdd_2*pus_s_3
-        pus_alpha_2_t_2 = pus_c_3*pus_qdd_2
+        pus_alpha_2_t = pus_qdd_2_t*pus_s_3
+        pus_alpha_2_in_axes3_y = pus_c_3_t*pus_qdd_2_t
         # (pus-alpha_3) angular acceleration of link 3
-        pus_alpha_3_x = -pus_alpha_2_t - pus_zeta_3_x
-        pus_alpha_3_y = pus_alpha_2_t_2 - pus_zeta_3_y
+        pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
+        pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
         # (pus-B_3) acceleration tensor of link 3
-        pus_B_3_xy = pus_qdd_3 - pus_W_3_xy
-        pus_B_3_yx = -pus_W_3_xy - pus_qdd_3
-        pus_B_3_zx = pus_zeta_3_y - pus_alpha_3_y
-        pus_B_3_zy = pus_alpha_3_x - pus_zeta_3_x
-        # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        pus_mu_3_x = (
-        pus_B_3_yx*pus_J_3_xy + pus_B_3_zx*pus_J_3_xz + pus_B_3_zy*pus_Sigma_3_yy -
-            pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) - pus_Sigma_3_zz*pus_alpha_2_t -
-            pus_acc_3_y*pus_h_3_y - pus_acc_3_z*pus_h_3_z
-        )
-        pus_mu_3_y = (
-        pus_B_3_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_t_2 + pus_acc_3_x*pus_h_3_y -
-            pus_B_3_zx*pus_Sigma_3_xx - pus_B_3_zy*pus_J_3_xz - pus_J_3_xy*(pus_W_3_t -
-            pus_W_3_t_3) - pus_acc_3_z*pus_h_3_x
-        )
-        pus_mu_3_z = (
-        pus_B_3_yx*pus_Sigma_3_xx + pus_acc_3_x*pus_h_3_z + pus_acc_3_y*pus_h_3_x -
-            pus_B_3_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_t - pus_J_3_xz*(pus_W_3_t -
-            pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_t_2
-        )
+        pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t
+        pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t
+        pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y
+        pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x
         # (pus-acc_1) acceleration of the reference point of link 1, less gravity
-        pus_acc_1_x = -pus_g_r0_x - pus_qdd_1
+        pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x
+        # (pus-acc_3) acceleration of the reference point of link 3, less gravity
+        pus_acc_3_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_acc_3_in_axes3_x = (
+        pus_S_ddot_in_axes3_x + pus_acc_3_t*pus_c_3_t - pus_g_in_axes0_z*pus_s_3
+        )
+        pus_acc_3_in_axes3_y = (
+        pus_S_ddot_in_axes3_y + pus_acc_3_t*pus_s_3 + pus_c_3_t*pus_g_in_axes0_z
+        )
+        pus_acc_3_in_axes3_z = (
+        pus_S_ddot_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x - pus_g_in_axes0_y*pus_s_2
+        )
+        # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
+        pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
+        pus_mu_3_t_3 = pus_qd_3*pus_qd_3
+        pus_mu_3_in_axes3_x = (
+        pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy + pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz +
+            pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 -
+            pus_mu_3_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_t -
+            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z
+        )
+        pus_mu_3_in_axes3_y = (
+        pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz + pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
+            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
+            - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
+            pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x
+        )
+        pus_mu_3_in_axes3_z = (
+        pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx + pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z +
+            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x - pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy
+            - pus_J_3_in_spec3_xy*pus_alpha_2_t - pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2)
+            - pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y
+        )
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        pus_G_t = inv_pus_v_2_t*(pus_mu_3_x*pus_s_3 - pus_c_3*pus_mu_3_y)
-        pus_G_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_z
+        pus_G_in_axes3_z = (
+        pus_w_2_in_axes3_z*(pus_mu_3_in_axes3_x*pus_s_3 - pus_c_3_t*pus_mu_3_in_axes3_y)
+        )
+        pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c) leg force on the platform without actuation and without the mass at the connection point
+        pus_c_in_axes3_x = (
+        pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
+            - pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_w_1_in_axes3_x*(pus_G_in_axes3_z*pus_c_2_t + pus_acc_1_in_axes0_x*pus_link1_mass -
+            pus_G_in_axes3_y*pus_e_1_in_axes3_y)
+        )
+        pus_c_in_axes3_y = (
+        -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
+        )
+        pus_c_in_axes3_z = (
+        pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) -
+            pus_G_in_axes3_z - pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
+        )
         pus_c_x = (
-        inv_pus_w_2_t*(pus_G_t*pus_c_2 + pus_G_t_2*pus_w_1_t + pus_acc_1_x*pus_link1_mass) +
-            pus_B_3_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 + pus_W_3_t_3) -
-            pus_alpha_2_t_2*pus_h_3_y
+        axis_x_pus_axes3_x*pus_c_in_axes3_x + axis_y_pus_axes3_x*pus_c_in_axes3_y +
+            axis_z_pus_axes3_x*pus_c_in_axes3_z
         )
         pus_c_y = (
-        -pus_G_t_2 - pus_B_3_yx*pus_h_3_x - pus_alpha_2_t*pus_h_3_y - pus_h_3_z*(pus_W_3_t +
-            pus_W_3_t_3)
+        axis_x_pus_axes3_y*pus_c_in_axes3_x + axis_y_pus_axes3_y*pus_c_in_axes3_y +
+            axis_z_pus_axes3_y*pus_c_in_axes3_z
         )
         pus_c_z = (
-        pus_B_3_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_t -
-            pus_B_3_zx*pus_h_3_x
-        )
-        pus_c_in_base_x = (
-        axis_x_pus_axes3_x*pus_c_x + axis_y_pus_axes3_in_base_x*pus_c_y +
-            axis_z_pus_axes3_in_base_x*pus_c_z
-        )
-        pus_c_in_base_y = (
-        axis_x_pus_axes3_y*pus_c_x + axis_y_pus_axes3_in_base_y*pus_c_y +
-            axis_z_pus_axes3_in_base_y*pus_c_z
-        )
-        pus_c_in_base_z = (
-        axis_x_pus_axes3_z*pus_c_x + axis_y_pus_axes3_in_base_z*pus_c_y +
-            axis_z_pus_axes3_in_base_z*pus_c_z
+        axis_x_pus_axes3_z*pus_c_in_axes3_x + axis_y_pus_axes3_z*pus_c_in_axes3_y +
+            axis_z_pus_axes3_z*pus_c_in_axes3_z
         )
         # (R_a) moment that actuators and external wrench must give
-        pus_R_a_t = pus_c_in_base_z*pus_q_in_base_y - pus_c_in_base_y*pus_q_in_base_z
-        pus_R_a_t_2 = pus_c_in_base_x*pus_q_in_base_z - pus_c_in_base_z*pus_q_in_base_x
-        pus_R_a_t_3 = pus_c_in_base_y*pus_q_in_base_x - pus_c_in_base_x*pus_q_in_base_y
+        pus_R_a_t = pus_c_y*pus_q_z - pus_c_z*pus_q_y
+        pus_R_a_t_2 = pus_c_z*pus_q_x - pus_c_x*pus_q_z
+        pus_R_a_t_3 = pus_c_x*pus_q_y - pus_c_y*pus_q_x
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
+        pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y
+        pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
+        pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
         ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
-            * 1.0))
+            pus_size_t_2) & (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) &
+            (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0))
         )
         sums = m.added(sums, leg, (
-        pus_c_in_base_x, pus_c_in_base_y, pus_c_in_base_z, pus_R_a_t, pus_R_a_t_2,
-            pus_R_a_t_3,
+        pus_c_x, pus_c_y, pus_c_z, pus_R_a_t, pus_R_a_t_2, pus_R_a_t_3,
         ))
-        out_H[_H_pus[0][leg]] = -pus_w_1_t_3
-        out_H[_H_pus[1][leg]] = -pus_w_1_t_4
-        out_H[_H_pus[2][leg]] = -pus_w_1_t_5
+        # (pus-w_1) reciprocal vector 1
+        out_H[_H_pus[0][leg]] = pus_w_1_x
+        out_H[_H_pus[1][leg]] = pus_w_1_y
+        out_H[_H_pus[2][leg]] = pus_w_1_z
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_pus[3][leg]] = pus_H_a_1_x
         out_H[_H_pus[4][leg]] = pus_H_a_1_y
         out_H[_H_pus[5][leg]] = pus_H_a_1_z
-    total_pus_x, total_pus_y, total_pus_z, total_pus_x_2, total_pus_y_2, total_pus_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_pus_x, R_a_pus_y, R_a_pus_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_pus_x
-    R_t_y = f_p_y - total_pus_y
-    R_t_z = f_p_z - total_pus_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_pus_x_2
-    R_a_y = mu_p_in_base_y - total_pus_y_2
-    R_a_z = mu_p_in_base_z - total_pus_z_2
+    R_a_x = R_a_pus_x + mu_p_x
+    R_a_y = R_a_pus_y + mu_p_y
+    R_a_z = R_a_pus_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -3077,12 +3234,12 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
             pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
             pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-            pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-            pus_platform_point_z, pus_size_t,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_platform_joint_offset_x,
+            pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size_t,
+            pus_size_t_2,
         ) = k
         # (pus-S) from the base point to the connection point
         pus_S_x = (
@@ -3097,42 +3254,42 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z -
             pus_base_point_z
         )
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        pus_q_1 = pus_px_1 + pus_q_1_t
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = -pus_branch_1*sqrt(pus_disc_1)
+        pus_q_1 = pus_S_in_axes0_x - pus_q_1_t
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_q_1_t*pus_q_1_t
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
         # (pus-q_2) displacement of joint 2
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
         pus_q_2 = (
-        atan2(inv_pus_rho2_2*pus_S_r0_y*pus_root_2, -inv_pus_rho2_2*pus_q_1_t*pus_root_2)
+        atan2(inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2, inv_pus_rho2_2*pus_q_1_t*pus_root_2)
         )
         # (pus-q_3) displacement of joint 3
         pus_q_3 = (
-        atan2(-inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+        atan2(-inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
             pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz),
-            inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2)
+            inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2)
         )
         ok = (
         ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t))
+            pus_size_t_2))
         )
+        # (pus-q_1) displacement of joint 1
         out_q[_q_pus[0][leg]] = pus_q_1
+        # (pus-q_2) displacement of joint 2
         out_q[_q_pus[1][leg]] = pus_q_2
+        # (pus-q_3) displacement of joint 3
         out_q[_q_pus[2][leg]] = pus_q_3
     return ok, (out_q,)
 
@@ -3193,103 +3350,107 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_base_frame_xx, pus_base_frame_xy,
-            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
-            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-            pus_platform_point_z, pus_size, pus_size_t,
+        inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+            pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
+            pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_platform_joint_offset_x,
+            pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+            pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
         # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-x_2) from the origin of joint 2 to the connection point
+        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
-        # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
+        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
-        )
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
         # (pus-S_dot) velocity of the connection point
-        pus_S_dot_x = t_dot_x + omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
-        pus_S_dot_y = t_dot_y + omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
-        pus_S_dot_z = t_dot_z + omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
-        # (pus-qd_3) rate of joint 3
+        pus_S_dot_x = t_dot_x + omega_y*pus_q_z - omega_z*pus_q_y
+        pus_S_dot_y = t_dot_y + omega_z*pus_q_x - omega_x*pus_q_z
+        pus_S_dot_z = t_dot_z + omega_x*pus_q_y - omega_y*pus_q_x
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
+        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        # (pus-qd_1) rate of joint 1
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
+        pus_qd_1_t = pus_c_2_t*pus_s_3
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
+            pus_base_frame_xz*pus_c_3_t
+        )
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
+            pus_base_frame_yz*pus_c_3_t
+        )
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
+            pus_base_frame_zz*pus_c_3_t
+        )
         pus_qd_1 = (
-        (pus_S_dot_x*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y) +
-            pus_S_dot_y*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z) +
-            pus_S_dot_z*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x))/pus_w_2_t
+        (pus_S_dot_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y) +
+            pus_S_dot_y*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z) +
+            pus_S_dot_z*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x))/pus_e_1_in_axes3_x
         )
-        pus_qd_3 = (
-        inv_pus_platform_joint_offset_x*(axis_y_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_y_pus_axes3_in_base_y*pus_S_dot_y + axis_y_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_qd_1*pus_w_1_t)
-        )
+        # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
-        (axis_z_pus_axes3_in_base_x*pus_S_dot_x + axis_z_pus_axes3_in_base_y*pus_S_dot_y +
-            axis_z_pus_axes3_in_base_z*pus_S_dot_z - pus_c_2*pus_qd_1)/pus_v_2_t
+        (axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)/pus_v_2_in_axes3_z
+        )
+        # (pus-qd_3) rate of joint 3
+        pus_qd_3 = (
+        pus_w_3_in_axes3_y*(axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1)
         )
         ok = (
         ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
-            * 1.0))
+            pus_size_t_2) & (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) &
+            (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0))
         )
-        out_qd[_qd_pus[0][leg]] = -pus_qd_1
+        # (pus-qd_1) rate of joint 1
+        out_qd[_qd_pus[0][leg]] = pus_qd_1
+        # (pus-qd_2) rate of joint 2
         out_qd[_qd_pus[1][leg]] = pus_qd_2
+        # (pus-qd_3) rate of joint 3
         out_qd[_qd_pus[2][leg]] = pus_qd_3
     return ok, (out_qd,)
 
@@ -3363,149 +3524,157 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_base_frame_xx, pus_base_frame_xy,
-            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
-            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-            pus_platform_point_z, pus_size, pus_size_t,
+        inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+            pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
+            pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_platform_joint_offset_x,
+            pus_platform_point_x, pus_platform_point_y, pus_platform_point_z, pus_size,
+            pus_size_t, pus_size_t_2, pus_w_3_in_axes3_y,
         ) = k
         # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-x_2) from the origin of joint 2 to the connection point
+        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
-        # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
+        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
-        )
-        axis_x_pus_axes3_x = (
-        axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y
-        )
-        axis_x_pus_axes3_y = (
-        axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z
-        )
-        axis_x_pus_axes3_z = (
-        axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
-        )
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
-        inv_pus_v_2_t = 1.0/pus_v_2_t
-        inv_pus_w_2_t = 1.0/pus_w_2_t
         # (pus-S_dot) velocity of the connection point
-        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
-        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
-        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
+        pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
+        pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x
         pus_S_dot_x = pus_S_dot_t + t_dot_x
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
-        # (pus-qd_3) rate of joint 3
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
+        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        # (pus-qd_1) rate of joint 1
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
+        pus_qd_1_t = pus_c_2_t*pus_s_3
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
+            pus_base_frame_xz*pus_c_3_t
+        )
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
+            pus_base_frame_yz*pus_c_3_t
+        )
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
+            pus_base_frame_zz*pus_c_3_t
+        )
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
         pus_qd_1 = (
-        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+        pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
             axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        pus_qd_3_t = (
-        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
-            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
-        )
-        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
-        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1)
+        pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
         )
+        # (pus-qd_3) rate of joint 3
+        pus_qd_3_t = (
+        axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1
+        )
+        pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_t = pus_qd_2*pus_s_3
-        pus_omega_2_t_2 = pus_c_3*pus_qd_2
-        # (pus-bias) acceleration of the connection point at zero joint accelerations
-        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
-        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_omega_2_t*pus_platform_joint_offset_x*pus_qd_3
+        pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3
+        pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2
         # (pus-a_p) acceleration of the connection point without its centripetal part
-        pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y
-        pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z
-        pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x
+        pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y
+        pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z
+        pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x
         # (pus-S_ddot) acceleration of the connection point
         pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
         pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
         pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_in_axes3_z = (
+        pus_omega_2_in_axes3_x*pus_qd_3_t +
+            pus_omega_2_in_axes3_x*pus_platform_joint_offset_x*pus_qd_3
+        )
         # (pus-rel) acceleration of the connection point left to the joint accelerations
-        pus_rel_x = (
+        pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_rel_in_axes3_x = (
         axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
-            axis_x_pus_axes3_z*pus_S_ddot_z + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
+            axis_x_pus_axes3_z*pus_S_ddot_z + pus_omega_2_in_axes3_y*pus_rel_t +
+            pus_qd_3*pus_qd_3_t
         )
-        pus_rel_y = (
-        axis_y_pus_axes3_in_base_x*pus_S_ddot_x + axis_y_pus_axes3_in_base_y*pus_S_ddot_y +
-            axis_y_pus_axes3_in_base_z*pus_S_ddot_z + pus_bias_t*pus_omega_2_t
+        pus_rel_in_axes3_y = (
+        axis_y_pus_axes3_x*pus_S_ddot_x + axis_y_pus_axes3_y*pus_S_ddot_y +
+            axis_y_pus_axes3_z*pus_S_ddot_z - pus_omega_2_in_axes3_x*pus_rel_t
         )
-        pus_rel_z = (
-        axis_z_pus_axes3_in_base_x*pus_S_ddot_x + axis_z_pus_axes3_in_base_y*pus_S_ddot_y +
-            axis_z_pus_axes3_in_base_z*pus_S_ddot_z - pus_bias_z
+        pus_rel_in_axes3_z = (
+        axis_z_pus_axes3_x*pus_S_ddot_x + axis_z_pus_axes3_y*pus_S_ddot_y +
+            axis_z_pus_axes3_z*pus_S_ddot_z - pus_bias_in_axes3_z
         )
         # (pus-qdd_1) acceleration of joint 1
-        pus_qdd_1 = inv_pus_w_2_t*pus_rel_x
-        pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y)
-        pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z)
+        pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
+        # (pus-qdd_2) acceleration of joint 2
+        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1)
+        # (pus-qdd_3) acceleration of joint 3
+        pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         ok = (
         ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
-            * 1.0))
+            pus_size_t_2) & (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) &
+            (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0))
         )
-        out_qdd[_qdd_pus[0][leg]] = -pus_qdd_1
-        out_qdd[_qdd_pus[1][leg]] = -pus_qdd_2
-        out_qdd[_qdd_pus[2][leg]] = -pus_qdd_3
+        # (pus-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_pus[0][leg]] = pus_qdd_1
+        # (pus-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_pus[1][leg]] = -pus_qdd_2_t
+        # (pus-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_pus[2][leg]] = -pus_qdd_3_t
     return ok, (out_qdd,)
 
 
@@ -3579,237 +3748,255 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, inv_pus_platform_joint_offset_x, pus_J_3_xy, pus_J_3_xz, pus_J_3_yz,
-            pus_Sigma_3_xx, pus_Sigma_3_yy, pus_Sigma_3_zz, pus_base_frame_xx, pus_base_frame_xy,
-            pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
-            pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
-            pus_g_r0_x, pus_g_r0_y, pus_g_r0_z, pus_h_3_x, pus_h_3_y, pus_h_3_z, pus_link1_mass,
+        inv_pus_size_t, pus_J_3_in_spec3_xy, pus_J_3_in_spec3_xz, pus_J_3_in_spec3_yz,
+            pus_Sigma_3_in_axes3_xx, pus_Sigma_3_in_axes3_yy, pus_Sigma_3_in_axes3_zz,
+            pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
+            pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
+            pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_branch_1,
+            pus_branch_2, pus_g_in_axes0_x, pus_g_in_axes0_y, pus_g_in_axes0_z,
+            pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z, pus_link1_mass,
             pus_link3_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t,
+            pus_platform_point_y, pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
+            pus_w_3_in_axes3_y,
         ) = k
         # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-x_2) from the origin of joint 2 to the connection point
+        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
-        # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
+        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
-        )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
-        )
-        axis_x_pus_axes3_x = (
-        axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y
-        )
-        axis_x_pus_axes3_y = (
-        axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z
-        )
-        axis_x_pus_axes3_z = (
-        axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x
-        )
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
-        inv_pus_v_2_t = 1.0/pus_v_2_t
-        inv_pus_w_2_t = 1.0/pus_w_2_t
         # (pus-S_dot) velocity of the connection point
-        pus_S_dot_t = omega_y*pus_q_in_base_z - omega_z*pus_q_in_base_y
-        pus_S_dot_t_2 = omega_z*pus_q_in_base_x - omega_x*pus_q_in_base_z
-        pus_S_dot_t_3 = omega_x*pus_q_in_base_y - omega_y*pus_q_in_base_x
+        pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
+        pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
+        pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x
         pus_S_dot_x = pus_S_dot_t + t_dot_x
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
-        # (pus-qd_3) rate of joint 3
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
+        pus_w_1_t = pus_c_2_t*pus_s_3
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_base_frame_xz*pus_c_3_t
+        )
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_base_frame_yz*pus_c_3_t
+        )
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_base_frame_zz*pus_c_3_t
+        )
+        axis_x_pus_axes3_x = (
+        axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
+        )
+        axis_x_pus_axes3_y = (
+        axis_y_pus_axes3_z*axis_z_pus_axes3_x - axis_y_pus_axes3_x*axis_z_pus_axes3_z
+        )
+        axis_x_pus_axes3_z = (
+        axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
+        )
+        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
+        pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
+        pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x
+        # (pus-w_2) reciprocal vector 2
+        pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
+        # (pus-qd_1) rate of joint 1
         pus_qd_1 = (
-        inv_pus_w_2_t*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
+        pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x + axis_x_pus_axes3_y*pus_S_dot_y +
             axis_x_pus_axes3_z*pus_S_dot_z)
         )
-        pus_qd_3_t = (
-        axis_y_pus_axes3_in_base_x*pus_S_dot_x + axis_y_pus_axes3_in_base_y*pus_S_dot_y +
-            axis_y_pus_axes3_in_base_z*pus_S_dot_z - pus_qd_1*pus_w_1_t
-        )
-        pus_qd_3 = inv_pus_platform_joint_offset_x*pus_qd_3_t
+        # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
-        inv_pus_v_2_t*(axis_z_pus_axes3_in_base_x*pus_S_dot_x +
-            axis_z_pus_axes3_in_base_y*pus_S_dot_y + axis_z_pus_axes3_in_base_z*pus_S_dot_z -
-            pus_c_2*pus_qd_1)
+        pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
         )
+        # (pus-qd_3) rate of joint 3
+        pus_qd_3_t = (
+        axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
+            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1
+        )
+        pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_t = pus_qd_2*pus_s_3
-        pus_omega_2_t_2 = pus_c_3*pus_qd_2
-        # (pus-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        pus_zeta_3_x = pus_omega_2_t_2*pus_qd_3
-        pus_zeta_3_y = pus_omega_2_t*pus_qd_3
+        pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3
+        pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
-        pus_W_3_t = pus_omega_2_t*pus_omega_2_t
-        pus_W_3_t_2 = pus_omega_2_t_2*pus_omega_2_t_2
-        pus_W_3_t_3 = pus_qd_3*pus_qd_3
-        pus_W_3_xy = pus_omega_2_t*pus_omega_2_t_2
-        # (pus-bias) acceleration of the connection point at zero joint accelerations
-        pus_bias_t = pus_omega_2_t_2*pus_platform_joint_offset_x
-        pus_bias_z = pus_omega_2_t*pus_qd_3_t + pus_platform_joint_offset_x*pus_zeta_3_y
-        # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        pus_g_r1_y = pus_g_r0_x*pus_s_2 - pus_c_2*pus_g_r0_y
-        # (pus-w_1) reciprocal vector 1
-        pus_w_1_t_3 = axis_x_pus_axes3_x*inv_pus_w_2_t
-        pus_w_1_t_4 = axis_x_pus_axes3_y*inv_pus_w_2_t
-        pus_w_1_t_5 = axis_x_pus_axes3_z*inv_pus_w_2_t
+        pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
+        pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
+        pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y
         # (pus-a_p) acceleration of the connection point without its centripetal part
-        pus_a_p_x = t_ddot_x + alpha_y*pus_q_in_base_z - alpha_z*pus_q_in_base_y
-        pus_a_p_y = t_ddot_y + alpha_z*pus_q_in_base_x - alpha_x*pus_q_in_base_z
-        pus_a_p_z = t_ddot_z + alpha_x*pus_q_in_base_y - alpha_y*pus_q_in_base_x
+        pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y
+        pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z
+        pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x
         # (pus-S_ddot) acceleration of the connection point
         pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2
         pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3
         pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t
-        pus_S_ddot_tip_x = (
+        pus_S_ddot_in_axes3_x = (
         axis_x_pus_axes3_x*pus_S_ddot_x + axis_x_pus_axes3_y*pus_S_ddot_y +
             axis_x_pus_axes3_z*pus_S_ddot_z
         )
-        pus_S_ddot_tip_y = (
-        axis_y_pus_axes3_in_base_x*pus_S_ddot_x + axis_y_pus_axes3_in_base_y*pus_S_ddot_y +
-            axis_y_pus_axes3_in_base_z*pus_S_ddot_z
+        pus_S_ddot_in_axes3_y = (
+        axis_y_pus_axes3_x*pus_S_ddot_x + axis_y_pus_axes3_y*pus_S_ddot_y +
+            axis_y_pus_axes3_z*pus_S_ddot_z
         )
-        pus_S_ddot_tip_z = (
-        axis_z_pus_axes3_in_base_x*pus_S_ddot_x + axis_z_pus_axes3_in_base_y*pus_S_ddot_y +
-            axis_z_pus_axes3_in_base_z*pus_S_ddot_z
+        pus_S_ddot_in_axes3_z = (
+        axis_z_pus_axes3_x*pus_S_ddot_x + axis_z_pus_axes3_y*pus_S_ddot_y +
+            axis_z_pus_axes3_z*pus_S_ddot_z
+        )
+        # (pus-bias) acceleration of the connection point at zero joint accelerations
+        pus_bias_in_axes3_z = (
+        pus_W_3_in_axes3_xz*pus_platform_joint_offset_x + pus_omega_2_in_axes3_x*pus_qd_3_t
         )
         # (pus-rel) acceleration of the connection point left to the joint accelerations
-        pus_rel_x = pus_S_ddot_tip_x + pus_bias_t*pus_omega_2_t_2 + pus_qd_3*pus_qd_3_t
-        pus_rel_y = pus_S_ddot_tip_y + pus_bias_t*pus_omega_2_t
-        pus_rel_z = pus_S_ddot_tip_z - pus_bias_z
+        pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x
+        pus_rel_in_axes3_x = (
+        pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t + pus_qd_3*pus_qd_3_t
+        )
+        pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t
+        pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z
         # (pus-qdd_1) acceleration of joint 1
-        pus_qdd_1 = inv_pus_w_2_t*pus_rel_x
-        pus_qdd_3 = inv_pus_platform_joint_offset_x*(pus_qdd_1*pus_w_1_t - pus_rel_y)
-        pus_qdd_2 = inv_pus_v_2_t*(pus_c_2*pus_qdd_1 - pus_rel_z)
-        # (pus-acc_3) acceleration of the reference point of link 3, less gravity
-        pus_acc_3_x = pus_S_ddot_tip_x + pus_c_3*pus_g_r1_y - pus_g_r0_z*pus_s_3
-        pus_acc_3_y = pus_S_ddot_tip_y + pus_c_3*pus_g_r0_z + pus_g_r1_y*pus_s_3
-        pus_acc_3_z = pus_S_ddot_tip_z + pus_c_2*pus_g_r0_x + pus_g_r0_y*pus_s_2
+        pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
+        # (pus-qdd_2) acceleration of joint 2
+        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1)
+        # (pus-qdd_3) acceleration of joint 3
+        pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
-        pus_alpha_2_t = pus_qdd_2*pus_s_3
-        pus_alpha_2_t_2 = pus_c_3*pus_qdd_2
+        pus_alpha_2_t = pus_qdd_2_t*pus_s_3
+        pus_alpha_2_in_axes3_y = pus_c_3_t*pus_qdd_2_t
         # (pus-alpha_3) angular acceleration of link 3
-        pus_alpha_3_x = -pus_alpha_2_t - pus_zeta_3_x
-        pus_alpha_3_y = pus_alpha_2_t_2 - pus_zeta_3_y
+        pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
+        pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
         # (pus-B_3) acceleration tensor of link 3
-        pus_B_3_xy = pus_qdd_3 - pus_W_3_xy
-        pus_B_3_yx = -pus_W_3_xy - pus_qdd_3
-        pus_B_3_zx = pus_zeta_3_y - pus_alpha_3_y
-        pus_B_3_zy = pus_alpha_3_x - pus_zeta_3_x
-        # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        pus_mu_3_x = (
-        pus_B_3_yx*pus_J_3_xy + pus_B_3_zx*pus_J_3_xz + pus_B_3_zy*pus_Sigma_3_yy -
-            pus_J_3_yz*(pus_W_3_t_2 - pus_W_3_t_3) - pus_Sigma_3_zz*pus_alpha_2_t -
-            pus_acc_3_y*pus_h_3_y - pus_acc_3_z*pus_h_3_z
-        )
-        pus_mu_3_y = (
-        pus_B_3_xy*pus_J_3_yz + pus_Sigma_3_zz*pus_alpha_2_t_2 + pus_acc_3_x*pus_h_3_y -
-            pus_B_3_zx*pus_Sigma_3_xx - pus_B_3_zy*pus_J_3_xz - pus_J_3_xy*(pus_W_3_t -
-            pus_W_3_t_3) - pus_acc_3_z*pus_h_3_x
-        )
-        pus_mu_3_z = (
-        pus_B_3_yx*pus_Sigma_3_xx + pus_acc_3_x*pus_h_3_z + pus_acc_3_y*pus_h_3_x -
-            pus_B_3_xy*pus_Sigma_3_yy - pus_J_3_xy*pus_alpha_2_t - pus_J_3_xz*(pus_W_3_t -
-            pus_W_3_t_2) - pus_J_3_yz*pus_alpha_2_t_2
-        )
+        pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t
+        pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t
+        pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y
+        pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x
         # (pus-acc_1) acceleration of the reference point of link 1, less gravity
-        pus_acc_1_x = -pus_g_r0_x - pus_qdd_1
+        pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x
+        # (pus-acc_3) acceleration of the reference point of link 3, less gravity
+        pus_acc_3_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_acc_3_in_axes3_x = (
+        pus_S_ddot_in_axes3_x + pus_acc_3_t*pus_c_3_t - pus_g_in_axes0_z*pus_s_3
+        )
+        pus_acc_3_in_axes3_y = (
+        pus_S_ddot_in_axes3_y + pus_acc_3_t*pus_s_3 + pus_c_3_t*pus_g_in_axes0_z
+        )
+        pus_acc_3_in_axes3_z = (
+        pus_S_ddot_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x - pus_g_in_axes0_y*pus_s_2
+        )
+        # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
+        pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y
+        pus_mu_3_t_3 = pus_qd_3*pus_qd_3
+        pus_mu_3_in_axes3_x = (
+        pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy + pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz +
+            pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 -
+            pus_mu_3_t_3) - pus_Sigma_3_in_axes3_zz*pus_alpha_2_t -
+            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z
+        )
+        pus_mu_3_in_axes3_y = (
+        pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz + pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
+            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
+            - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
+            pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x
+        )
+        pus_mu_3_in_axes3_z = (
+        pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx + pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z +
+            pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x - pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy
+            - pus_J_3_in_spec3_xy*pus_alpha_2_t - pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2)
+            - pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y
+        )
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        pus_G_t = inv_pus_v_2_t*(pus_mu_3_x*pus_s_3 - pus_c_3*pus_mu_3_y)
-        pus_G_t_2 = inv_pus_platform_joint_offset_x*pus_mu_3_z
+        pus_G_in_axes3_z = (
+        pus_w_2_in_axes3_z*(pus_mu_3_in_axes3_x*pus_s_3 - pus_c_3_t*pus_mu_3_in_axes3_y)
+        )
+        pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c) leg force on the platform without actuation and without the mass at the connection point
-        pus_c_x = (
-        inv_pus_w_2_t*(pus_G_t*pus_c_2 + pus_G_t_2*pus_w_1_t + pus_acc_1_x*pus_link1_mass) +
-            pus_B_3_xy*pus_h_3_z + pus_h_3_x*(pus_W_3_t_2 + pus_W_3_t_3) -
-            pus_alpha_2_t_2*pus_h_3_y
+        pus_c_in_axes3_x = (
+        pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
+            - pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
+            pus_w_1_in_axes3_x*(pus_G_in_axes3_z*pus_c_2_t + pus_acc_1_in_axes0_x*pus_link1_mass -
+            pus_G_in_axes3_y*pus_e_1_in_axes3_y)
         )
-        pus_c_y = (
-        -pus_G_t_2 - pus_B_3_yx*pus_h_3_x - pus_alpha_2_t*pus_h_3_y - pus_h_3_z*(pus_W_3_t +
-            pus_W_3_t_3)
+        pus_c_in_axes3_y = (
+        -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
+            pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
         )
-        pus_c_z = (
-        pus_B_3_zy*pus_h_3_z + pus_h_3_y*(pus_W_3_t + pus_W_3_t_2) - pus_G_t -
-            pus_B_3_zx*pus_h_3_x
+        pus_c_in_axes3_z = (
+        pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) -
+            pus_G_in_axes3_z - pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
         )
         # (pus-c_true) leg force on the platform without actuation, the last link's mass included
-        pus_c_true_x = pus_c_x - pus_acc_3_x*pus_link3_mass
-        pus_c_true_y = pus_c_y - pus_acc_3_y*pus_link3_mass
-        pus_c_true_z = pus_c_z - pus_acc_3_z*pus_link3_mass
-        pus_c_true_in_base_x = (
-        axis_x_pus_axes3_x*pus_c_true_x + axis_y_pus_axes3_in_base_x*pus_c_true_y +
-            axis_z_pus_axes3_in_base_x*pus_c_true_z
+        pus_c_true_in_axes3_x = pus_c_in_axes3_x - pus_acc_3_in_axes3_x*pus_link3_mass
+        pus_c_true_in_axes3_y = pus_c_in_axes3_y - pus_acc_3_in_axes3_y*pus_link3_mass
+        pus_c_true_in_axes3_z = pus_c_in_axes3_z - pus_acc_3_in_axes3_z*pus_link3_mass
+        pus_c_true_x = (
+        axis_x_pus_axes3_x*pus_c_true_in_axes3_x + axis_y_pus_axes3_x*pus_c_true_in_axes3_y +
+            axis_z_pus_axes3_x*pus_c_true_in_axes3_z
         )
-        pus_c_true_in_base_y = (
-        axis_x_pus_axes3_y*pus_c_true_x + axis_y_pus_axes3_in_base_y*pus_c_true_y +
-            axis_z_pus_axes3_in_base_y*pus_c_true_z
+        pus_c_true_y = (
+        axis_x_pus_axes3_y*pus_c_true_in_axes3_x + axis_y_pus_axes3_y*pus_c_true_in_axes3_y +
+            axis_z_pus_axes3_y*pus_c_true_in_axes3_z
         )
-        pus_c_true_in_base_z = (
-        axis_x_pus_axes3_z*pus_c_true_x + axis_y_pus_axes3_in_base_z*pus_c_true_y +
-            axis_z_pus_axes3_in_base_z*pus_c_true_z
+        pus_c_true_z = (
+        axis_x_pus_axes3_z*pus_c_true_in_axes3_x + axis_y_pus_axes3_z*pus_c_true_in_axes3_y +
+            axis_z_pus_axes3_z*pus_c_true_in_axes3_z
         )
         ok = (
         ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t) & (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE
-            * 1.0))
+            pus_size_t_2) & (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) &
+            (abs(pus_e_1_in_axes3_x) > _TOLERANCE * 1.0))
         )
-        out_leg_force[_leg_force_pus[0][leg]] = pus_c_true_in_base_x
-        out_leg_force[_leg_force_pus[1][leg]] = pus_c_true_in_base_y
-        out_leg_force[_leg_force_pus[2][leg]] = pus_c_true_in_base_z
-        out_drive[_drive_pus[0][leg]] = -pus_w_1_t_3
-        out_drive[_drive_pus[1][leg]] = -pus_w_1_t_4
-        out_drive[_drive_pus[2][leg]] = -pus_w_1_t_5
+        # (pus-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_pus[0][leg]] = pus_c_true_x
+        out_leg_force[_leg_force_pus[1][leg]] = pus_c_true_y
+        out_leg_force[_leg_force_pus[2][leg]] = pus_c_true_z
+        # (pus-w_1) reciprocal vector 1
+        out_drive[_drive_pus[0][leg]] = pus_w_1_x
+        out_drive[_drive_pus[1][leg]] = pus_w_1_y
+        out_drive[_drive_pus[2][leg]] = pus_w_1_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3817,7 +4004,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3857,21 +4047,22 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, pus_b_r0_x, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
+        inv_pus_size_t, pus_b_in_axes0_x, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz,
             pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx,
             pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x, pus_base_point_y,
-            pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t, pus_g_r0_x, pus_g_r0_y,
-            pus_g_r0_z, pus_h_1_x, pus_h_1_y, pus_h_1_z, pus_h_3_x, pus_h_3_y, pus_h_3_z,
-            pus_link1_mass, pus_platform_joint_offset_x, pus_platform_point_x,
-            pus_platform_point_y, pus_platform_point_z, pus_potential_t, pus_potential_t_2,
-            pus_size_t,
+            pus_base_point_z, pus_branch_1, pus_branch_2, pus_g_in_axes0_x, pus_g_in_axes0_y,
+            pus_g_in_axes0_z, pus_h_1_in_spec0_x, pus_h_1_in_spec0_y, pus_h_1_in_spec0_z,
+            pus_h_3_in_spec3_x, pus_h_3_in_spec3_y, pus_h_3_in_spec3_z, pus_link1_mass,
+            pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
+            pus_platform_point_z, pus_potential_t, pus_potential_t_2, pus_size_t, pus_size_t_2,
         ) = k
         # (pus-S) from the base point to the connection point
         pus_S_x = (
@@ -3886,55 +4077,54 @@ def _run_potential(m, X):
         t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z -
             pus_base_point_z
         )
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        pus_q_1 = pus_px_1 + pus_q_1_t
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-q_1) displacement of joint 1
+        pus_q_1_t = -pus_branch_1*sqrt(pus_disc_1)
+        pus_q_1 = pus_S_in_axes0_x - pus_q_1_t
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_q_1_t*pus_q_1_t
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
-        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
+        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
         pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
-        # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        pus_d_Gamma_2_t = pus_h_3_z*pus_s_3 - pus_c_3*pus_h_3_x
+        # (pus-c_3) cosine of the angle of joint 3 from its reference direction
+        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-s_3) sine of the angle of joint 3 from its reference direction
+        pus_s_3 = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
         # (potential) potential energy
-        pus_potential_t_3 = (
-        pus_g_r0_x*(pus_h_1_x + pus_d_Gamma_2_t*pus_s_2 + pus_link1_mass*(pus_b_r0_x + pus_q_1) -
-            pus_c_2*pus_h_3_y) + pus_g_r0_y*(pus_h_1_y + pus_potential_t - pus_c_2*pus_d_Gamma_2_t
-            - pus_h_3_y*pus_s_2) + pus_g_r0_z*(pus_h_1_z + pus_potential_t_2 + pus_c_3*pus_h_3_z +
-            pus_h_3_x*pus_s_3)
+        pus_potential_t_3 = pus_h_3_in_spec3_z*pus_s_3 - pus_c_3_t*pus_h_3_in_spec3_x
+        pus_potential_t_4 = (
+        pus_g_in_axes0_x*(pus_h_1_in_spec0_x + pus_link1_mass*(pus_b_in_axes0_x + pus_q_1) -
+            pus_c_2_t*pus_h_3_in_spec3_y - pus_potential_t_3*pus_s_2) +
+            pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t + pus_h_3_in_spec3_y*pus_s_2 -
+            pus_c_2_t*pus_potential_t_3) + pus_g_in_axes0_z*(pus_h_1_in_spec0_z +
+            pus_potential_t_2 + pus_c_3_t*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*pus_s_3)
         )
         ok = (
         ok & m.every(leg, (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE *
-            pus_size_t))
+            pus_size_t_2))
         )
         sums = m.added(sums, leg, (
-        pus_potential_t_3,
+        pus_potential_t_4,
         ))
-    total_pus, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_pus
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3944,7 +4134,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3987,132 +4177,135 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_pus_disc_1_t_6, inv_pus_size, inv_pus_size_t, pus_base_frame_xx, pus_base_frame_xy,
+        inv_pus_size, inv_pus_size_t, inv_pus_size_t_2, pus_base_frame_xx, pus_base_frame_xy,
             pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy, pus_base_frame_yz,
             pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz, pus_base_point_x,
-            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2, pus_disc_1_t,
+            pus_base_point_y, pus_base_point_z, pus_branch_1, pus_branch_2,
             pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
-            pus_platform_point_z, pus_size, pus_size_t,
+            pus_platform_point_z, pus_size, pus_size_t, pus_size_t_2,
         ) = k
         # (pus-S) from the base point to the connection point
-        pus_q_in_base_x = (
+        pus_q_x = (
         R_xx*pus_platform_point_x + R_xy*pus_platform_point_y + R_xz*pus_platform_point_z
         )
-        pus_q_in_base_y = (
+        pus_q_y = (
         R_yx*pus_platform_point_x + R_yy*pus_platform_point_y + R_yz*pus_platform_point_z
         )
-        pus_q_in_base_z = (
+        pus_q_z = (
         R_zx*pus_platform_point_x + R_zy*pus_platform_point_y + R_zz*pus_platform_point_z
         )
-        pus_S_x = pus_q_in_base_x + t_x - pus_base_point_x
-        pus_S_y = pus_q_in_base_y + t_y - pus_base_point_y
-        pus_S_z = pus_q_in_base_z + t_z - pus_base_point_z
-        # (pus-px_1) component along axis 1
-        pus_px_1 = (
+        pus_S_x = pus_q_x + t_x - pus_base_point_x
+        pus_S_y = pus_q_y + t_y - pus_base_point_y
+        pus_S_z = pus_q_z + t_z - pus_base_point_z
+        pus_S_in_axes0_x = (
         pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx + pus_S_z*pus_base_frame_zx
         )
-        # (pus-disc_1) discriminant of the distance equation
-        pus_disc_1_t_2 = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
-        pus_disc_1 = pus_disc_1_t + pus_px_1*pus_px_1 - pus_disc_1_t_2
-        # (pus-q_1) displacement of joint 1
-        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
-        # (pus-S) from the base point to the connection point
-        pus_S_r0_y = (
+        pus_S_in_axes0_y = (
         pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy + pus_S_z*pus_base_frame_zy
         )
+        # (pus-disc_1) discriminant of the distance equation
+        pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
+        pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
+        # (pus-x_2) from the origin of joint 2 to the connection point
+        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_r0_y*pus_S_r0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
+        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_pus_rho2_2 = 1.0/pus_rho2_2
+        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        # (pus-s_2) sine of the angle of joint 2 from its reference direction
+        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3 = inv_pus_disc_1_t_6*pus_platform_joint_offset_x*pus_root_2
+        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
         # (pus-s_3) sine of the angle of joint 3 from its reference direction
         pus_s_3 = (
-        inv_pus_disc_1_t_6*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
             pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_t = pus_c_3*pus_platform_joint_offset_x
-        # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2 = inv_pus_rho2_2*pus_S_r0_y*pus_root_2
-        # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_in_base_x = -pus_base_frame_xx*pus_c_2 - pus_base_frame_xy*pus_s_2
-        axis_z_pus_axes3_in_base_y = -pus_base_frame_yx*pus_c_2 - pus_base_frame_yy*pus_s_2
-        axis_z_pus_axes3_in_base_z = -pus_base_frame_zx*pus_c_2 - pus_base_frame_zy*pus_s_2
-        pus_w_1_t = pus_s_2*pus_s_3
-        pus_w_1_t_2 = pus_c_2*pus_s_3
-        axis_y_pus_axes3_in_base_x = (
-        pus_base_frame_xy*pus_w_1_t_2 - pus_base_frame_xx*pus_w_1_t - pus_base_frame_xz*pus_c_3
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
+        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
+        pus_w_1_t = pus_c_2_t*pus_s_3
+        axis_y_pus_axes3_x = (
+        pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
+            pus_base_frame_xz*pus_c_3_t
         )
-        axis_y_pus_axes3_in_base_y = (
-        pus_base_frame_yy*pus_w_1_t_2 - pus_base_frame_yx*pus_w_1_t - pus_base_frame_yz*pus_c_3
+        axis_y_pus_axes3_y = (
+        pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
+            pus_base_frame_yz*pus_c_3_t
         )
-        axis_y_pus_axes3_in_base_z = (
-        pus_base_frame_zy*pus_w_1_t_2 - pus_base_frame_zx*pus_w_1_t - pus_base_frame_zz*pus_c_3
+        axis_y_pus_axes3_z = (
+        pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
+            pus_base_frame_zz*pus_c_3_t
         )
-        # (pus-w_2) reciprocal vector 2
-        pus_w_2_t = pus_c_3*pus_s_2
-        inv_pus_w_2_t = 1.0/pus_w_2_t
-        # (pus-w_1) reciprocal vector 1
-        pus_w_1_t_3 = (
-        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
-            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y)
+        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
+        pus_w_1_x = (
+        pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*axis_z_pus_axes3_y)
         )
-        pus_w_1_t_4 = (
-        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
-            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z)
+        pus_w_1_y = (
+        pus_w_1_in_axes3_x*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*axis_z_pus_axes3_z)
         )
-        pus_w_1_t_5 = (
-        inv_pus_w_2_t*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
-            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x)
+        pus_w_1_z = (
+        pus_w_1_in_axes3_x*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*axis_z_pus_axes3_x)
+        )
+        # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        pus_pivot_size = abs(pus_rho2_2)
+        pus_pivot_size_2 = abs(pus_v_2_in_axes3_z)
+        pus_pivot_size_3 = abs(pus_e_1_in_axes3_x)
+        pus_least_pivots = (
+        least(least(pus_pivot_size_3, inv_pus_size*pus_pivot_size_2),
+            sqrt(inv_pus_size_t_2*pus_pivot_size))
         )
         # (pus-H_a_1) moment of the column's unit force about the platform origin
-        pus_H_a_1_x = pus_q_in_base_z*pus_w_1_t_4 - pus_q_in_base_y*pus_w_1_t_5
-        pus_H_a_1_y = pus_q_in_base_x*pus_w_1_t_5 - pus_q_in_base_z*pus_w_1_t_3
-        pus_H_a_1_z = pus_q_in_base_y*pus_w_1_t_3 - pus_q_in_base_x*pus_w_1_t_4
+        pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y
+        pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
+        pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         # (spread) rms distance of the platform points from their centroid
-        pus_spread_t = b_c_x - pus_platform_point_x
-        pus_spread_t_2 = b_c_y - pus_platform_point_y
-        pus_spread_t_3 = b_c_z - pus_platform_point_z
+        pus_spread_t = b_c_in_platform_x - pus_platform_point_x
+        pus_spread_t_2 = b_c_in_platform_y - pus_platform_point_y
+        pus_spread_t_3 = b_c_in_platform_z - pus_platform_point_z
         pus_spread_t_4 = (
         pus_spread_t*pus_spread_t + pus_spread_t_2*pus_spread_t_2 + pus_spread_t_3*pus_spread_t_3
         )
-        # (pus-rho2_2) squared amplitude
-        pus_pivot_size = abs(pus_rho2_2)
-        # (pus-w_2) reciprocal vector 2
-        pus_pivot_size_2 = abs(pus_v_2_t)
-        pus_pivot_size_3 = abs(pus_w_2_t)
-        # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        pus_least_pivots = (
-        least(least(pus_pivot_size_3, inv_pus_size*pus_pivot_size_2),
-            sqrt(inv_pus_size_t*pus_pivot_size))
-        )
         reached = reached & m.every(leg, (pus_disc_1 >= 0.0))
         clear = (
-        clear & m.every(leg, (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t) &
-            (abs(pus_v_2_t) > _TOLERANCE * pus_size) & (abs(-pus_w_2_t) > _TOLERANCE * 1.0))
+        clear & m.every(leg, (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+            (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
+            _TOLERANCE * 1.0))
         )
         sums = m.added(sums, leg, (
         pus_spread_t_4,
         ))
-        out_H[_H_pus[0][leg]] = -pus_w_1_t_3
-        out_H[_H_pus[1][leg]] = -pus_w_1_t_4
-        out_H[_H_pus[2][leg]] = -pus_w_1_t_5
+        # (pus-w_1) reciprocal vector 1
+        out_H[_H_pus[0][leg]] = pus_w_1_x
+        out_H[_H_pus[1][leg]] = pus_w_1_y
+        out_H[_H_pus[2][leg]] = pus_w_1_z
+        # (pus-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_pus[3][leg]] = pus_H_a_1_x
         out_H[_H_pus[4][leg]] = pus_H_a_1_y
         out_H[_H_pus[5][leg]] = pus_H_a_1_z
+        # (pus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_pus[0][leg]] = pus_least_pivots
         out_reach[_reach_pus[0][leg]] = pus_disc_1
-    total_pus, = sums
+    spread_pus, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_pus)
+    spread = sqrt(spread_pus)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

@@ -531,20 +531,20 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rus = 0;
-    real total_rus_x = 0;
-    real total_rus_y = 0;
-    real total_rus_z = 0;
-    real total_rus_xx = 0;
-    real total_rus_xy = 0;
-    real total_rus_xz = 0;
-    real total_rus_yy = 0;
-    real total_rus_yz = 0;
-    real total_rus_zz = 0;
-    real total_rus_x_2 = 0;
-    real total_rus_y_2 = 0;
-    real total_rus_z_2 = 0;
-    real total_rus_2 = 0;
+    real m_star_rus = 0;
+    real h_star_rus_in_platform_x = 0;
+    real h_star_rus_in_platform_y = 0;
+    real h_star_rus_in_platform_z = 0;
+    real J_star_rus_in_platform_xx = 0;
+    real J_star_rus_in_platform_xy = 0;
+    real J_star_rus_in_platform_xz = 0;
+    real J_star_rus_in_platform_yy = 0;
+    real J_star_rus_in_platform_yz = 0;
+    real J_star_rus_in_platform_zz = 0;
+    real b_c_rus_in_platform_x = 0;
+    real b_c_rus_in_platform_y = 0;
+    real b_c_rus_in_platform_z = 0;
+    real legs_size_rus = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -617,59 +617,81 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         const real rus_branch_1 = signs_rus_branch_1[own];
         static const signed char signs_rus_branch_2[] = {1, 1, 1, 1, 1, 1};
         const real rus_branch_2 = signs_rus_branch_2[own];
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_joint2_offset_x*rus_joint2_offset_x;
-        const real rus_Kd_1_t_2 = R(0.5)*rus_Kd_1_t;
-        const real rus_Kd_1_t_3 = rus_platform_joint_offset_x*rus_platform_joint_offset_x;
-        const real rus_Kd_1_t_4 = R(0.5)*rus_Kd_1_t_3;
         /* (rus-size) length of the leg's lever arms, the measure of what is near singular */
-        const real rus_size_t = R(5.17091866281e-07) + rus_Kd_1_t + rus_Kd_1_t_3;
-        const real rus_size = root(rus_size_t);
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1_t = rus_size*rus_size*rus_size_t;
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = 1/rus_Kd_1_t;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = 1/rus_Kd_1_t_3;
-        /* (rus-rho_tip_3) connection point to the centre of mass of link 3 */
-        const real rus_rho_tip_3_x = rus_link3_centre_of_mass_x - rus_platform_joint_offset_x;
-        /* (rus-h_3) first moment of link 3 about the connection point */
-        const real rus_h_3_x = rus_link3_mass*rus_rho_tip_3_x;
-        const real rus_h_3_y = rus_link3_centre_of_mass_y*rus_link3_mass;
-        const real rus_h_3_z = rus_link3_centre_of_mass_z*rus_link3_mass;
-        /* (rus-w_3) reciprocal vector 3 */
-        const real inv_rus_platform_joint_offset_x = 1/rus_platform_joint_offset_x;
-        /* (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real rus_d_phi_3_t = inv_rus_platform_joint_offset_x*rus_h_3_z;
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_J_3_t = rus_rho_tip_3_x*rus_rho_tip_3_x;
-        const real rus_J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y;
-        const real rus_J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z;
-        const real rus_J_3_t_4 = rus_J_3_t + rus_J_3_t_2 + rus_J_3_t_3;
-        const real rus_J_3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t - rus_J_3_t_4);
-        const real rus_J_3_xy = rus_link3_inertia_xy -
-            rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_x;
-        const real rus_J_3_xz = rus_link3_inertia_xz -
-            rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_x;
-        const real rus_J_3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_2 - rus_J_3_t_4);
-        const real rus_J_3_yz = rus_link3_inertia_yz -
-            rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass;
-        const real rus_J_3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_3 - rus_J_3_t_4);
-        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_3_t = inv_rus_platform_joint_offset_x*rus_J_3_yy;
-        const real rus_d_Gamma_3_y = rus_d_Gamma_3_t + rus_h_3_x;
+        const real rus_size_t = rus_joint2_offset_x*rus_joint2_offset_x;
+        const real rus_size_t_2 = rus_platform_joint_offset_x*rus_platform_joint_offset_x;
+        const real rus_size_t_3 = R(5.17091866281e-07) + rus_size_t + rus_size_t_2;
+        const real rus_size = root(rus_size_t_3);
+        /* (rus-h_1) first moment of link 1 about the origin of link 1 */
+        const real rus_h_1_in_spec1_x = rus_link1_centre_of_mass_x*rus_link1_mass;
+        const real rus_h_1_in_spec1_y = rus_link1_centre_of_mass_y*rus_link1_mass;
+        const real rus_h_1_in_spec1_z = rus_link1_centre_of_mass_z*rus_link1_mass;
         /* (rus-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rus_J_1_t = rus_link1_centre_of_mass_z*rus_link1_centre_of_mass_z;
         const real rus_J_1_t_2 = rus_J_1_t + rus_link1_centre_of_mass_x*rus_link1_centre_of_mass_x
             + rus_link1_centre_of_mass_y*rus_link1_centre_of_mass_y;
-        const real rus_J_1_zz = rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t - rus_J_1_t_2);
+        const real rus_J_1_in_spec1_zz = rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t -
+            rus_J_1_t_2);
+        /* (rus-rho_tip_3) connection point to the centre of mass of link 3 */
+        const real rus_rho_tip_3_in_spec3_x = rus_link3_centre_of_mass_x -
+            rus_platform_joint_offset_x;
+        /* (rus-h_3) first moment of link 3 about the connection point */
+        const real rus_h_3_in_spec3_x = rus_link3_mass*rus_rho_tip_3_in_spec3_x;
+        const real rus_h_3_in_spec3_y = rus_link3_centre_of_mass_y*rus_link3_mass;
+        const real rus_h_3_in_spec3_z = rus_link3_centre_of_mass_z*rus_link3_mass;
+        /* (rus-J_3) inertia tensor of link 3 about the connection point */
+        const real rus_J_3_t = R(0.5)*rus_size_t;
+        const real rus_J_3_t_2 = R(0.5)*rus_size_t_2;
+        const real inv_rus_size_t = 1/rus_size_t;
+        const real inv_rus_size_t_2 = 1/rus_size_t_2;
+        const real rus_J_3_t_3 = rus_rho_tip_3_in_spec3_x*rus_rho_tip_3_in_spec3_x;
+        const real rus_J_3_t_4 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y;
+        const real rus_J_3_t_5 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z;
+        const real rus_J_3_t_6 = rus_J_3_t_3 + rus_J_3_t_4 + rus_J_3_t_5;
+        const real rus_J_3_in_spec3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t_3 -
+            rus_J_3_t_6);
+        const real rus_J_3_in_spec3_xy = rus_link3_inertia_xy -
+            rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_in_spec3_x;
+        const real rus_J_3_in_spec3_xz = rus_link3_inertia_xz -
+            rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_in_spec3_x;
+        const real rus_J_3_in_spec3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_4 -
+            rus_J_3_t_6);
+        const real rus_J_3_in_spec3_yz = rus_link3_inertia_yz -
+            rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass;
+        const real rus_J_3_in_spec3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_5 -
+            rus_J_3_t_6);
+        /* (rus-rho2_1) squared amplitude */
+        const real rus_rho2_1_t = rus_size*rus_size*rus_size_t_3;
+        /* (rus-w_3) reciprocal vector 3 */
+        const real rus_w_3_in_axes3_y = 1/rus_platform_joint_offset_x;
+        /* (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real rus_d_phi_3_in_axes3_xy = rus_h_3_in_spec3_z*rus_w_3_in_axes3_y;
+        /* (rus-trace_J_3) half the trace of that inertia tensor */
+        const real rus_trace_J_3 = R(0.5)*rus_J_3_in_spec3_xx + R(0.5)*rus_J_3_in_spec3_yy +
+            R(0.5)*rus_J_3_in_spec3_zz;
+        /* (rus-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real rus_Sigma_3_in_axes3_xx = rus_trace_J_3 - rus_J_3_in_spec3_xx;
+        const real rus_Sigma_3_in_axes3_yy = rus_trace_J_3 - rus_J_3_in_spec3_zz;
+        const real rus_Sigma_3_in_axes3_zz = rus_trace_J_3 - rus_J_3_in_spec3_yy;
+        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real rus_d_Gamma_3_t = rus_J_3_in_spec3_yy*rus_w_3_in_axes3_y;
+        const real rus_d_Gamma_3_in_axes3_y = rus_d_Gamma_3_t + rus_h_3_in_spec3_x;
+        /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rus_mu_1_t = gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx +
+            gravity_z*rus_base_frame_zx;
+        const real rus_mu_1_t_2 = gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy +
+            gravity_z*rus_base_frame_zy;
+        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rus_rho2_1_t = 1/rus_rho2_1_t;
+        const real inv_rus_size_t_3 = 1/rus_size_t_3;
+        const real inv_rus_size = 1/rus_size;
         /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rus_d_c_yy = -inv_rus_platform_joint_offset_x*rus_d_Gamma_3_y -
-            inv_rus_platform_joint_offset_x*rus_h_3_x;
+        const real rus_d_c_in_axes3_yy = -rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_y -
+            rus_h_3_in_spec3_x*rus_w_3_in_axes3_y;
         /* (h_star) first moment about the platform origin */
         const real rus_h_star_t = rus_link3_mass*rus_platform_point_x;
         const real rus_h_star_t_2 = rus_link3_mass*rus_platform_point_y;
@@ -685,56 +707,31 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         const real rus_J_star_t_8 = rus_link3_mass*(rus_J_star_t_2 - rus_J_star_t_4);
         const real rus_J_star_t_9 = rus_link3_mass*rus_platform_point_y*rus_platform_point_z;
         const real rus_J_star_t_10 = rus_link3_mass*(rus_J_star_t_3 - rus_J_star_t_4);
-        /* (rus-trace_J_3) half the trace of that inertia tensor */
-        const real rus_trace_J_3 = R(0.5)*rus_J_3_xx + R(0.5)*rus_J_3_yy + R(0.5)*rus_J_3_zz;
-        /* (rus-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real rus_Sigma_3_xx = rus_trace_J_3 - rus_J_3_xx;
-        const real rus_Sigma_3_yy = rus_trace_J_3 - rus_J_3_zz;
-        const real rus_Sigma_3_zz = rus_trace_J_3 - rus_J_3_yy;
-        /* (rus-h_1) first moment of link 1 about the origin of link 1 */
-        const real rus_h_1_x = rus_link1_centre_of_mass_x*rus_link1_mass;
-        const real rus_h_1_y = rus_link1_centre_of_mass_y*rus_link1_mass;
-        const real rus_h_1_z = rus_link1_centre_of_mass_z*rus_link1_mass;
-        /* (rus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real rus_g_r0_x = gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx +
-            gravity_z*rus_base_frame_zx;
-        const real rus_g_r0_y = gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy +
-            gravity_z*rus_base_frame_zy;
-        const real rus_g_r0_z = gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz +
-            gravity_z*rus_base_frame_zz;
         /* (potential) potential energy */
-        const real rus_b_r0_x = rus_base_frame_xx*rus_base_point_x +
+        const real rus_g_in_axes1_z = gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz +
+            gravity_z*rus_base_frame_zz;
+        const real rus_potential_t = rus_base_frame_xx*rus_base_point_x +
             rus_base_frame_yx*rus_base_point_y + rus_base_frame_zx*rus_base_point_z;
-        const real rus_b_r0_y = rus_base_frame_xy*rus_base_point_x +
+        const real rus_potential_t_2 = rus_base_frame_xy*rus_base_point_x +
             rus_base_frame_yy*rus_base_point_y + rus_base_frame_zy*rus_base_point_z;
-        const real rus_potential_t = rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
+        const real rus_potential_t_3 = rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
             rus_base_frame_yz*rus_base_point_y + rus_base_frame_zz*rus_base_point_z);
-        /* (rus-rho2_1) squared amplitude */
-        const real inv_rus_rho2_1_t_4 = 1/rus_rho2_1_t;
-        /* (rus-rho2_2) squared amplitude */
-        const real inv_rus_size_t = 1/rus_size_t;
-        /* (rus-w_1) reciprocal vector 1 */
-        const real inv_rus_size = 1/rus_size;
-        model->inv_rus_Kd_1_t_6[leg] = inv_rus_Kd_1_t_6;
-        model->inv_rus_Kd_1_t_8[leg] = inv_rus_Kd_1_t_8;
-        model->inv_rus_platform_joint_offset_x[leg] = inv_rus_platform_joint_offset_x;
-        model->inv_rus_rho2_1_t_4[leg] = inv_rus_rho2_1_t_4;
+        model->inv_rus_rho2_1_t[leg] = inv_rus_rho2_1_t;
         model->inv_rus_size[leg] = inv_rus_size;
         model->inv_rus_size_t[leg] = inv_rus_size_t;
-        model->rus_J_1_zz[leg] = rus_J_1_zz;
-        model->rus_J_3_xx[leg] = rus_J_3_xx;
-        model->rus_J_3_xy[leg] = rus_J_3_xy;
-        model->rus_J_3_xz[leg] = rus_J_3_xz;
-        model->rus_J_3_yz[leg] = rus_J_3_yz;
-        model->rus_J_3_zz[leg] = rus_J_3_zz;
-        model->rus_Kd_1_t_2[leg] = rus_Kd_1_t_2;
-        model->rus_Kd_1_t_4[leg] = rus_Kd_1_t_4;
-        model->rus_Sigma_3_xx[leg] = rus_Sigma_3_xx;
-        model->rus_Sigma_3_yy[leg] = rus_Sigma_3_yy;
-        model->rus_Sigma_3_zz[leg] = rus_Sigma_3_zz;
-        model->rus_b_r0_x[leg] = rus_b_r0_x;
-        model->rus_b_r0_y[leg] = rus_b_r0_y;
+        model->inv_rus_size_t_2[leg] = inv_rus_size_t_2;
+        model->inv_rus_size_t_3[leg] = inv_rus_size_t_3;
+        model->rus_J_1_in_spec1_zz[leg] = rus_J_1_in_spec1_zz;
+        model->rus_J_3_in_spec3_xx[leg] = rus_J_3_in_spec3_xx;
+        model->rus_J_3_in_spec3_xy[leg] = rus_J_3_in_spec3_xy;
+        model->rus_J_3_in_spec3_xz[leg] = rus_J_3_in_spec3_xz;
+        model->rus_J_3_in_spec3_yz[leg] = rus_J_3_in_spec3_yz;
+        model->rus_J_3_in_spec3_zz[leg] = rus_J_3_in_spec3_zz;
+        model->rus_J_3_t[leg] = rus_J_3_t;
+        model->rus_J_3_t_2[leg] = rus_J_3_t_2;
+        model->rus_Sigma_3_in_axes3_xx[leg] = rus_Sigma_3_in_axes3_xx;
+        model->rus_Sigma_3_in_axes3_yy[leg] = rus_Sigma_3_in_axes3_yy;
+        model->rus_Sigma_3_in_axes3_zz[leg] = rus_Sigma_3_in_axes3_zz;
         model->rus_base_frame_xx[leg] = rus_base_frame_xx;
         model->rus_base_frame_xy[leg] = rus_base_frame_xy;
         model->rus_base_frame_xz[leg] = rus_base_frame_xz;
@@ -749,89 +746,98 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         model->rus_base_point_z[leg] = rus_base_point_z;
         model->rus_branch_1[leg] = rus_branch_1;
         model->rus_branch_2[leg] = rus_branch_2;
+        model->rus_d_Gamma_3_in_axes3_y[leg] = rus_d_Gamma_3_in_axes3_y;
         model->rus_d_Gamma_3_t[leg] = rus_d_Gamma_3_t;
-        model->rus_d_Gamma_3_y[leg] = rus_d_Gamma_3_y;
-        model->rus_d_c_yy[leg] = rus_d_c_yy;
-        model->rus_d_phi_3_t[leg] = rus_d_phi_3_t;
-        model->rus_g_r0_x[leg] = rus_g_r0_x;
-        model->rus_g_r0_y[leg] = rus_g_r0_y;
-        model->rus_g_r0_z[leg] = rus_g_r0_z;
-        model->rus_h_1_x[leg] = rus_h_1_x;
-        model->rus_h_1_y[leg] = rus_h_1_y;
-        model->rus_h_1_z[leg] = rus_h_1_z;
-        model->rus_h_3_x[leg] = rus_h_3_x;
-        model->rus_h_3_y[leg] = rus_h_3_y;
-        model->rus_h_3_z[leg] = rus_h_3_z;
+        model->rus_d_c_in_axes3_yy[leg] = rus_d_c_in_axes3_yy;
+        model->rus_d_phi_3_in_axes3_xy[leg] = rus_d_phi_3_in_axes3_xy;
+        model->rus_g_in_axes1_z[leg] = rus_g_in_axes1_z;
+        model->rus_h_1_in_spec1_x[leg] = rus_h_1_in_spec1_x;
+        model->rus_h_1_in_spec1_y[leg] = rus_h_1_in_spec1_y;
+        model->rus_h_1_in_spec1_z[leg] = rus_h_1_in_spec1_z;
+        model->rus_h_3_in_spec3_x[leg] = rus_h_3_in_spec3_x;
+        model->rus_h_3_in_spec3_y[leg] = rus_h_3_in_spec3_y;
+        model->rus_h_3_in_spec3_z[leg] = rus_h_3_in_spec3_z;
         model->rus_joint2_offset_x[leg] = rus_joint2_offset_x;
         model->rus_link1_mass[leg] = rus_link1_mass;
         model->rus_link3_mass[leg] = rus_link3_mass;
+        model->rus_mu_1_t[leg] = rus_mu_1_t;
+        model->rus_mu_1_t_2[leg] = rus_mu_1_t_2;
         model->rus_platform_joint_offset_x[leg] = rus_platform_joint_offset_x;
         model->rus_platform_point_x[leg] = rus_platform_point_x;
         model->rus_platform_point_y[leg] = rus_platform_point_y;
         model->rus_platform_point_z[leg] = rus_platform_point_z;
         model->rus_potential_t[leg] = rus_potential_t;
+        model->rus_potential_t_2[leg] = rus_potential_t_2;
+        model->rus_potential_t_3[leg] = rus_potential_t_3;
         model->rus_rho2_1_t[leg] = rus_rho2_1_t;
         model->rus_size[leg] = rus_size;
-        model->rus_size_t[leg] = rus_size_t;
-        total_rus += leg < 6 ? rus_link3_mass : 0;
-        total_rus_x += leg < 6 ? rus_h_star_t : 0;
-        total_rus_y += leg < 6 ? rus_h_star_t_2 : 0;
-        total_rus_z += leg < 6 ? rus_h_star_t_3 : 0;
-        total_rus_xx += leg < 6 ? rus_J_star_t_5 : 0;
-        total_rus_xy += leg < 6 ? rus_J_star_t_6 : 0;
-        total_rus_xz += leg < 6 ? rus_J_star_t_7 : 0;
-        total_rus_yy += leg < 6 ? rus_J_star_t_8 : 0;
-        total_rus_yz += leg < 6 ? rus_J_star_t_9 : 0;
-        total_rus_zz += leg < 6 ? rus_J_star_t_10 : 0;
-        total_rus_x_2 += leg < 6 ? rus_platform_point_x : 0;
-        total_rus_y_2 += leg < 6 ? rus_platform_point_y : 0;
-        total_rus_z_2 += leg < 6 ? rus_platform_point_z : 0;
-        total_rus_2 += leg < 6 ? rus_size_t : 0;
+        model->rus_size_t_3[leg] = rus_size_t_3;
+        model->rus_w_3_in_axes3_y[leg] = rus_w_3_in_axes3_y;
+        m_star_rus += leg < 6 ? rus_link3_mass : 0;
+        h_star_rus_in_platform_x += leg < 6 ? rus_h_star_t : 0;
+        h_star_rus_in_platform_y += leg < 6 ? rus_h_star_t_2 : 0;
+        h_star_rus_in_platform_z += leg < 6 ? rus_h_star_t_3 : 0;
+        J_star_rus_in_platform_xx += leg < 6 ? -rus_J_star_t_5 : 0;
+        J_star_rus_in_platform_xy += leg < 6 ? -rus_J_star_t_6 : 0;
+        J_star_rus_in_platform_xz += leg < 6 ? -rus_J_star_t_7 : 0;
+        J_star_rus_in_platform_yy += leg < 6 ? -rus_J_star_t_8 : 0;
+        J_star_rus_in_platform_yz += leg < 6 ? -rus_J_star_t_9 : 0;
+        J_star_rus_in_platform_zz += leg < 6 ? -rus_J_star_t_10 : 0;
+        b_c_rus_in_platform_x += leg < 6 ? rus_platform_point_x : 0;
+        b_c_rus_in_platform_y += leg < 6 ? rus_platform_point_y : 0;
+        b_c_rus_in_platform_z += leg < 6 ? rus_platform_point_z : 0;
+        legs_size_rus += leg < 6 ? rus_size_t_3 : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_rus;
+    const real m_star = m_star_rus + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_rus_x;
-    const real h_star_y = h_star_t_2 + total_rus_y;
-    const real h_star_z = h_star_t_3 + total_rus_z;
+    const real h_star_in_platform_x = h_star_rus_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_rus_in_platform_y + h_star_t_2;
+    const real h_star_in_platform_z = h_star_rus_in_platform_z + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_rus_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_rus_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_rus_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_rus_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_rus_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_rus_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_rus_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_rus_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_rus_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_rus_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_rus_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_rus_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.16666666666666666)*total_rus_x_2;
-    const real b_c_y = R(0.16666666666666666)*total_rus_y_2;
-    const real b_c_z = R(0.16666666666666666)*total_rus_z_2;
+    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_rus_in_platform_x;
+    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_rus_in_platform_y;
+    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_rus_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_rus_2);
+    const real legs_size = root(legs_size_rus)*spread_t;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1414,41 +1420,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1459,26 +1471,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1497,21 +1518,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1522,445 +1543,458 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
+        /* (rus-J_3) inertia tensor of link 3 about the connection point */
         const real R_xx = s[3*w + j];
         const real R_xy = s[4*w + j];
         const real R_xz = s[5*w + j];
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
-        /* (rus-px_1) component along the reference direction */
+        const real rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z;
+        const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
+            rus_J_3_t_5*rus_J_3_t_5;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_J_3_t_8 = rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx;
         const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-py_1) component across the reference direction */
+        const real rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x;
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
+        const real rus_J_3_t_10 = rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy;
+        const real rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x;
+        const real rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9;
+        const real rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7;
         const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
+        const real rus_J_3_t_14 = root(rus_J_3_t_13)*rus_branch_1;
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x;
         const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
+        const real rus_J_3_t_16 = rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
+            rus_J_3_t_5*rus_base_frame_zz;
+        const real rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
             rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17;
         const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
+        const real rus_J_3_t_19 = root(rus_J_3_t_18)*rus_branch_2;
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
+        const real rus_e_1_in_axes3_y =
+            -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x;
+        const real rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_J_3_in_axes2_xz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y;
+        const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
+        const real rus_J_3_in_axes1_zz =
+            rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
+            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
+        const real inv_rus_J_3_t_12 = 1/rus_J_3_t_12;
+        const real rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 -
+            rus_J_3_t_11*rus_J_3_t_14);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
-        const real rus_w_2_t = inv_rus_r_1_t*inv_rus_v_1_t*rus_v_1_z;
-        /* (rus-w_3) reciprocal vector 3 */
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_w_3_t = inv_rus_platform_joint_offset_x*inv_rus_v_1_t*rus_v_1_t_2;
-        /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rus_d_alpha_3_t = inv_rus_r_1_t*rus_s_3;
-        const real rus_d_alpha_3_t_2 = inv_rus_r_1_t*rus_c_3;
-        /* (rus-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_L_c_3_r0_y = rus_J_3_xy*rus_s_3 + rus_J_3_yz*rus_c_3;
-        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_3_t_2 = inv_rus_r_1_t*rus_L_c_3_r0_y;
-        const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_d_Gamma_3_x = rus_h_3_z - inv_rus_v_1_t*(rus_L_c_3_r0_y +
-            rus_d_Gamma_3_t*rus_v_1_t_2 - rus_d_Gamma_3_t_2*rus_v_1_z);
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_J_3_xx = m->rus_J_3_xx[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_zz = m->rus_J_3_zz[i];
-        const real rus__y = rus_s_3*(rus_J_3_xx*rus_s_3 + rus_J_3_xz*rus_c_3) -
-            rus_c_3*(-rus_J_3_xz*rus_s_3 - rus_J_3_zz*rus_c_3);
-        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_d_Gamma_2_t = rus_c_3*rus_h_3_y;
-        const real rus_d_Gamma_2_t_2 = inv_rus_r_1_t*rus__y;
-        const real rus_d_Gamma_2_t_3 = inv_rus_platform_joint_offset_x*rus_L_c_3_r0_y;
-        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_z;
-        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_2;
-        const real rus_d_Gamma_2_x = -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus__y + rus_d_Gamma_2_t_5
-            - rus_d_Gamma_2_t_4);
-        const real rus_d_Gamma_2_y = rus_d_Gamma_2_t_3 - rus_h_3_y*rus_s_3;
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_d_Gamma_2_z = rus_d_Gamma_2_t_2 + rus_c_3*rus_h_3_x - rus_h_3_z*rus_s_3;
-        /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_d_Gamma_1_x = -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus_J_1_zz + rus__y +
-            rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4);
-        /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rus_d_c_xx = inv_rus_v_1_t*rus_d_Gamma_1_x + rus_d_Gamma_3_x*rus_w_3_t +
-            rus_h_3_z*rus_w_3_t - rus_d_Gamma_2_x*rus_w_2_t - rus_h_3_y*(inv_rus_v_1_t*rus_c_3 -
-            rus_c_3*rus_w_2_t);
-        const real rus_d_Gamma_3_y = m->rus_d_Gamma_3_y[i];
-        const real rus_d_phi_3_t = m->rus_d_phi_3_t[i];
-        const real rus_d_c_xy = inv_rus_v_1_t*rus_d_Gamma_2_y + rus_d_Gamma_3_y*rus_w_3_t -
-            rus_d_phi_3_t - rus_d_Gamma_2_y*rus_w_2_t;
-        const real rus_d_c_xz = inv_rus_v_1_t*rus_d_Gamma_2_z + rus_d_Gamma_3_t_2*rus_w_3_t +
-            rus_d_alpha_3_t_2*rus_h_3_y - rus_d_Gamma_2_z*rus_w_2_t;
-        const real rus_d_c_yz = rus_d_alpha_3_t*rus_h_3_y -
-            inv_rus_platform_joint_offset_x*rus_d_Gamma_3_t_2;
-        /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rus_d_c_yy = m->rus_d_c_yy[i];
-        const real rus_Q_t = rus_d_c_xx - rus_d_c_yy;
-        const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-        const real rus_Q_t_3 = rus_d_c_xx + inv_rus_r_1_t*rus_d_Gamma_2_z +
-            rus_d_alpha_3_t_2*rus_h_3_x - rus_d_alpha_3_t*rus_h_3_z;
-        const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-        const real rus_Q_t_5 = axis_x_rus_axes3_x*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_x*rus_d_c_yz - axis_y_rus_axes3_in_base_x*rus_Q_t_2;
-        const real rus_Q_t_6 = axis_x_rus_axes3_y*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_y*rus_d_c_yz - axis_y_rus_axes3_in_base_y*rus_Q_t_2;
-        const real rus_Q_t_7 = axis_x_rus_axes3_z*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_z*rus_d_c_yz - axis_y_rus_axes3_in_base_z*rus_Q_t_2;
-        const real rus_Q_t_8 = axis_z_rus_axes3_in_base_x*rus_Q_t_4 -
-            axis_x_rus_axes3_x*rus_d_c_xz;
-        const real rus_Q_t_9 = axis_z_rus_axes3_in_base_y*rus_Q_t_4 -
-            axis_x_rus_axes3_y*rus_d_c_xz;
-        const real rus_Q_t_10 = axis_z_rus_axes3_in_base_z*rus_Q_t_4 -
-            axis_x_rus_axes3_z*rus_d_c_xz;
-        const real rus_Q_t_11 = axis_y_rus_axes3_in_base_x*rus_Q_t_5 -
-            axis_z_rus_axes3_in_base_x*rus_Q_t_8;
-        const real rus_Q_t_12 = 2*rus_Q_t_11 + rus_d_c_xx;
-        const real rus_Q_t_13 = axis_y_rus_axes3_in_base_x*rus_Q_t_6 +
-            axis_y_rus_axes3_in_base_y*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_9 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_8;
-        const real rus_Q_t_14 = axis_y_rus_axes3_in_base_x*rus_Q_t_7 +
-            axis_y_rus_axes3_in_base_z*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_10 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_8;
-        const real rus_Q_t_15 = axis_y_rus_axes3_in_base_y*rus_Q_t_6 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_9;
-        const real rus_Q_t_16 = 2*rus_Q_t_15 + rus_d_c_xx;
-        const real rus_Q_t_17 = axis_y_rus_axes3_in_base_y*rus_Q_t_7 +
-            axis_y_rus_axes3_in_base_z*rus_Q_t_6 - axis_z_rus_axes3_in_base_y*rus_Q_t_10 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_9;
-        const real rus_Q_t_18 = axis_y_rus_axes3_in_base_z*rus_Q_t_7 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_10;
-        const real rus_Q_t_19 = 2*rus_Q_t_18 + rus_d_c_xx;
-        /* (M_ta) coupling block of M */
-        const real rus_M_ta_t = rus_Q_t_13*rus_q_in_base_z;
-        const real rus_M_ta_t_2 = rus_Q_t_14*rus_q_in_base_y;
-        const real rus_M_ta_t_3 = rus_M_ta_t - rus_M_ta_t_2;
-        const real rus_M_ta_t_4 = rus_Q_t_12*rus_q_in_base_z - rus_Q_t_14*rus_q_in_base_x;
-        const real rus_M_ta_t_5 = rus_Q_t_12*rus_q_in_base_y - rus_Q_t_13*rus_q_in_base_x;
-        const real rus_M_ta_t_6 = rus_Q_t_16*rus_q_in_base_z - rus_Q_t_17*rus_q_in_base_y;
-        const real rus_M_ta_t_7 = rus_Q_t_17*rus_q_in_base_x;
-        const real rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7;
-        const real rus_M_ta_t_9 = rus_Q_t_13*rus_q_in_base_y - rus_Q_t_16*rus_q_in_base_x;
-        const real rus_M_ta_t_10 = rus_Q_t_17*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_y;
-        const real rus_M_ta_t_11 = rus_Q_t_14*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_x;
-        const real rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real rus_M_aa_t = rus_M_ta_t_6*rus_q_in_base_z - rus_M_ta_t_10*rus_q_in_base_y;
-        const real rus_M_aa_t_2 = rus_M_ta_t_8*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_y;
-        const real rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_in_base_y + rus_M_ta_t_9*rus_q_in_base_z;
-        const real rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_x;
-        const real rus_M_aa_t_5 = rus_M_ta_t_12*rus_q_in_base_x + rus_M_ta_t_5*rus_q_in_base_z;
-        const real rus_M_aa_t_6 = rus_M_ta_t_5*rus_q_in_base_y - rus_M_ta_t_9*rus_q_in_base_x;
+        const real rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 +
+            rus_J_3_t_14*rus_J_3_t_9);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_J_3_t_18 = 1/rus_J_3_t_18;
+        const real rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19;
         /* (rus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y;
+        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
         const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x;
+        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
+        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
         const real t_dot_x = s[12*w + j];
         const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x +
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z;
+        const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_z = rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t +
+            rus_e_1_in_axes3_y*rus_r_1_in_axes1_z) -
+            rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
+            rus_e_1_in_axes3_y*rus_v_1_t);
+        /* (rus-w_1) reciprocal vector 1 */
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_e_1_in_axes3_x*rus_s_2;
+        const real rus_w_1_t_4 = rus_c_2*rus_e_1_in_axes3_x;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_e_1_in_axes3_y;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_e_1_in_axes3_y;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_e_1_in_axes3_y;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
+        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
+        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
+        /* (rus-w_2) reciprocal vector 2 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
+        /* (rus-w_3) reciprocal vector 3 */
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
             axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_dot_y + axis_y_rus_axes3_in_base_z*rus_S_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
+        /* (rus-omega_1) angular velocity of link 1 */
+        const real rus_omega_1_in_axes3_x = rus_e_1_in_axes3_x*rus_qd_1;
+        const real rus_omega_1_in_axes3_y = rus_e_1_in_axes3_y*rus_qd_1;
         /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
-        /* (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3;
-        const real rus_zeta_3_y = rus_omega_2_t*rus_qd_3;
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes3_y = rus_e_1_in_axes3_y*rus_omega_2_in_axes2_z;
+        /* (rus-W_3) centripetal tensor of link 3 */
+        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-u_1) centripetal acceleration of the connection point */
         const real rus_u_1_x = omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
         const real rus_u_1_y = omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
         const real rus_u_1_z = omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_t = rus_omega_2_t*rus_omega_2_t;
-        const real rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2;
-        const real rus_W_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
+        const real rus_u_1_in_axes3_x = axis_x_rus_axes3_x*rus_u_1_x +
+            axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z;
+        const real rus_u_1_in_axes3_y = axis_y_rus_axes3_x*rus_u_1_x +
+            axis_y_rus_axes3_y*rus_u_1_y + axis_y_rus_axes3_z*rus_u_1_z;
+        const real rus_u_1_in_axes3_z = axis_z_rus_axes3_x*rus_u_1_x +
+            axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_platform_joint_offset_x*rus_zeta_3_y - rus_bias_t*rus_omega_1_t*rus_omega_1_t -
-            rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
-        /* (rus-u_1) centripetal acceleration of the connection point */
-        const real rus_u_1_tip_x = axis_x_rus_axes3_x*rus_u_1_x + axis_x_rus_axes3_y*rus_u_1_y +
-            axis_x_rus_axes3_z*rus_u_1_z;
-        const real rus_u_1_tip_y = axis_y_rus_axes3_in_base_x*rus_u_1_x +
-            axis_y_rus_axes3_in_base_y*rus_u_1_y + axis_y_rus_axes3_in_base_z*rus_u_1_z;
-        const real rus_u_1_tip_z = axis_z_rus_axes3_in_base_x*rus_u_1_x +
-            axis_z_rus_axes3_in_base_y*rus_u_1_y + axis_z_rus_axes3_in_base_z*rus_u_1_z;
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x +
+            rus_bias_t*rus_e_1_in_axes3_y*rus_omega_1_in_axes3_y;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+            rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rus_rel_o_x = rus_u_1_tip_x - rus_bias_x;
-        const real rus_rel_o_y = rus_u_1_tip_y - rus_bias_y;
-        const real rus_rel_o_z = rus_u_1_tip_z - rus_bias_z;
+        const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
+        const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y;
+        const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z;
+        /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rus_qdd_1_o_t = inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
         /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real rus_qdd_1_o = inv_rus_v_1_t*rus_rel_o_x;
-        const real rus_qdd_3_o = inv_rus_platform_joint_offset_x*(rus_qdd_1_o*rus_v_1_t_2 -
-            rus_rel_o_y);
+        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_3 -
+            rus_rel_o_in_axes3_y);
         /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rus_alpha_2_o_z = inv_rus_r_1_t*(rus_rel_o_z + rus_qdd_1_o*rus_v_1_z) -
-            rus_qdd_1_o;
-        const real rus_alpha_2_o_t = rus_alpha_2_o_z*rus_s_3;
-        const real rus_alpha_2_o_t_2 = rus_alpha_2_o_z*rus_c_3;
+        const real rus_alpha_2_o_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
+            rus_qdd_1_o_t*rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
+        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x;
+        const real rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_y;
+        /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
+        const real rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z;
         /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real rus_alpha_3_o_x = rus_alpha_2_o_t - rus_zeta_3_x;
-        const real rus_alpha_3_o_y = -rus_alpha_2_o_t_2 - rus_zeta_3_y;
+        const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+        const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
         /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rus_B_3_o_xy = rus_qdd_3_o - rus_W_3_xy;
-        const real rus_B_3_o_yx = -rus_W_3_xy - rus_qdd_3_o;
-        const real rus_B_3_o_zx = rus_zeta_3_y - rus_alpha_3_o_y;
-        const real rus_B_3_o_zy = rus_alpha_3_o_x - rus_zeta_3_x;
+        const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
+        const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
+        const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+        const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
         /* (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rus_acc_3_o_x = rus_u_1_tip_x - axis_x_rus_axes3_x*gravity_x -
+        const real rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
             axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_o_y = rus_u_1_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z;
-        const real rus_acc_3_o_z = rus_u_1_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z;
+        const real rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
+            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
+        const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
+            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
         /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real rus_Sigma_3_yy = m->rus_Sigma_3_yy[i];
-        const real rus_Sigma_3_zz = m->rus_Sigma_3_zz[i];
-        const real rus_mu_3_o_x = rus_B_3_o_yx*rus_J_3_xy + rus_B_3_o_zx*rus_J_3_xz +
-            rus_B_3_o_zy*rus_Sigma_3_yy + rus_Sigma_3_zz*rus_alpha_2_o_t - rus_J_3_yz*(rus_W_3_t_2
-            - rus_W_3_t_3) - rus_acc_3_o_y*rus_h_3_y - rus_acc_3_o_z*rus_h_3_z;
-        const real rus_Sigma_3_xx = m->rus_Sigma_3_xx[i];
-        const real rus_mu_3_o_y = rus_B_3_o_xy*rus_J_3_yz + rus_acc_3_o_x*rus_h_3_y -
-            rus_B_3_o_zx*rus_Sigma_3_xx - rus_B_3_o_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t -
-            rus_W_3_t_3) - rus_Sigma_3_zz*rus_alpha_2_o_t_2 - rus_acc_3_o_z*rus_h_3_x;
-        const real rus_mu_3_o_z = rus_B_3_o_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_o_t +
-            rus_J_3_yz*rus_alpha_2_o_t_2 + rus_acc_3_o_x*rus_h_3_z + rus_acc_3_o_y*rus_h_3_x -
-            rus_B_3_o_xy*rus_Sigma_3_yy - rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2);
-        const real rus_mu_3_o_r0_y = rus_mu_3_o_x*rus_s_3 - rus_c_3*rus_mu_3_o_y;
+        const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+        const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+        const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
+        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy +
+            rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
+            rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2
+            - rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_z;
+        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y +
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
+            rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_x;
+        const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x +
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_x
+            - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
+            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y;
+        const real rus_mu_3_o_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x +
+            rus_e_1_in_axes3_y*rus_mu_3_o_in_axes3_y;
+        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z;
+        const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
+        const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
+            inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz + rus_d_Gamma_3_t*rus_v_1_t_3 -
+            rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z);
+        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
+        const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y;
+        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
+        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3;
+        const real rus_d_Gamma_2_in_axes3_x = rus_d_Gamma_2_t -
+            inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4);
+        const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
+        const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_e_1_in_axes3_y*rus_h_3_in_spec3_x;
         /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_mu_1_o_z = rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) -
-            rus_J_1_zz*rus_qdd_1_o - rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+        const real rus_mu_1_o_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_o_t -
+            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
         /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rus_N_1_o_z = rus_mu_1_o_z + rus_mu_3_o_r0_y;
+        const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
+        /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rus_d_Gamma_1_in_axes3_x = rus_d_Gamma_2_t -
+            inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 -
+            rus_d_Gamma_2_t_4);
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rus_G_o_t = inv_rus_r_1_t*rus_mu_3_o_r0_y;
-        const real rus_G_o_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_o_z;
+        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
+        /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x +
+            rus_d_Gamma_3_in_axes3_x*rus_w_3_t + rus_h_3_in_spec3_z*rus_w_3_t -
+            rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
+            inv_rus_v_1_t_2*rus_e_1_in_axes3_y);
+        const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
+        const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
+        const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y +
+            rus_d_Gamma_3_in_axes3_y*rus_w_3_t - rus_d_phi_3_in_axes3_xy -
+            rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
+        const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y;
+        const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rus_c_o_x = inv_rus_v_1_t*(rus_N_1_o_z + rus_G_o_t_2*rus_v_1_t_2 -
-            rus_G_o_t*rus_v_1_z) + rus_B_3_o_xy*rus_h_3_z + rus_alpha_2_o_t_2*rus_h_3_y +
-            rus_h_3_x*(rus_W_3_t_2 + rus_W_3_t_3);
-        const real rus_c_o_y = rus_alpha_2_o_t*rus_h_3_y - rus_G_o_t_2 - rus_B_3_o_yx*rus_h_3_x -
-            rus_h_3_z*(rus_W_3_t + rus_W_3_t_3);
-        const real rus_c_o_z = rus_B_3_o_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) -
-            rus_G_o_t - rus_B_3_o_zx*rus_h_3_x;
+        const real rus_c_o_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
+            rus_G_o_in_axes3_y*rus_v_1_t_3 - rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) +
+            rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
+            rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x -
+            rus_h_3_in_spec3_z*(rus_mu_3_o_t + rus_mu_3_o_t_3);
+        const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_y*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
+            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x;
+        /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
+        const real rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
+        const real rus_Q_t_2 = R(0.5)*rus_Q_t;
+        const real rus_Q_t_3 = rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
+            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x;
+        const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
+        const real rus_Q_t_5 = axis_x_rus_axes3_x*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_x*rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
+        const real rus_Q_t_6 = axis_x_rus_axes3_y*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_y*rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
+        const real rus_Q_t_7 = axis_x_rus_axes3_z*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_z*rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
+        const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
+            axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
+            axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
+            axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
+        const real rus_Q_xx = -2*rus_Q_t_11 - rus_d_c_in_axes3_xx;
+        const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
+            axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
+        const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
+            axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
+        const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
+        const real rus_Q_yy = -2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
+        const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
+            axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
+        const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
+        const real rus_Q_zz = -2*rus_Q_t_13 - rus_d_c_in_axes3_xx;
         /* (rus-U) velocity and gravity terms of the leg force */
-        const real rus_U_in_base_x = -axis_x_rus_axes3_x*rus_c_o_x -
-            axis_y_rus_axes3_in_base_x*rus_c_o_y - axis_z_rus_axes3_in_base_x*rus_c_o_z;
-        const real rus_U_in_base_y = -axis_x_rus_axes3_y*rus_c_o_x -
-            axis_y_rus_axes3_in_base_y*rus_c_o_y - axis_z_rus_axes3_in_base_y*rus_c_o_z;
-        const real rus_U_in_base_z = -axis_x_rus_axes3_z*rus_c_o_x -
-            axis_y_rus_axes3_in_base_z*rus_c_o_y - axis_z_rus_axes3_in_base_z*rus_c_o_z;
+        const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
+        const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
+        const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
+        /* (M_ta) coupling block of M */
+        const real rus_M_ta_t = -rus_Q_xy*rus_q_z;
+        const real rus_M_ta_t_2 = rus_Q_xz*rus_q_y;
+        const real rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2;
+        const real rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x;
+        const real rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y;
+        const real rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z;
+        const real rus_M_ta_t_7 = rus_Q_yz*rus_q_x;
+        const real rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7;
+        const real rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y;
+        const real rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z;
+        const real rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x;
+        const real rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z;
+        const real rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y + rus_M_ta_t_8*rus_q_z;
+        const real rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z;
+        const real rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x;
+        const real rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x;
+        const real rus_M_aa_t_6 = rus_M_ta_t_9*rus_q_x - rus_M_ta_t_5*rus_q_y;
         /* (Z_a) rotational part of Z */
-        const real rus_Z_a_t = rus_U_in_base_z*rus_q_in_base_y - rus_U_in_base_y*rus_q_in_base_z;
-        const real rus_Z_a_t_2 = rus_U_in_base_x*rus_q_in_base_z -
-            rus_U_in_base_z*rus_q_in_base_x;
-        const real rus_Z_a_t_3 = rus_U_in_base_y*rus_q_in_base_x -
-            rus_U_in_base_x*rus_q_in_base_y;
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t;
-        const real rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t;
-        const real rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t;
+        const real rus_Z_a_t = rus_U_z*rus_q_y - rus_U_y*rus_q_z;
+        const real rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x;
+        const real rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y;
         /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        const real rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5;
-        const real rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3;
-        const real rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4;
-        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_t_12 : rus_Q_t_12;  /* total_rus_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_t_13 : rus_Q_t_13;  /* total_rus_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_t_14 : rus_Q_t_14;  /* total_rus_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_t_16 : rus_Q_t_16;  /* total_rus_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_t_17 : rus_Q_t_17;  /* total_rus_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_t_19 : rus_Q_t_19;  /* total_rus_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rus_M_ta_t_3 : rus_M_ta_t_3;  /* total_rus_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + rus_M_ta_t_4 : rus_M_ta_t_4;  /* total_rus_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + rus_M_ta_t_5 : rus_M_ta_t_5;  /* total_rus_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + rus_M_ta_t_6 : rus_M_ta_t_6;  /* total_rus_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + rus_M_ta_t_8 : rus_M_ta_t_8;  /* total_rus_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + rus_M_ta_t_9 : rus_M_ta_t_9;  /* total_rus_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + rus_M_ta_t_10 : rus_M_ta_t_10;  /* total_rus_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rus_M_ta_t_11 : rus_M_ta_t_11;  /* total_rus_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + rus_M_ta_t_12 : rus_M_ta_t_12;  /* total_rus_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + rus_M_aa_t : rus_M_aa_t;  /* total_rus_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + rus_M_aa_t_2 : rus_M_aa_t_2;  /* total_rus_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + rus_M_aa_t_3 : rus_M_aa_t_3;  /* total_rus_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + rus_M_aa_t_4 : rus_M_aa_t_4;  /* total_rus_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + rus_M_aa_t_5 : rus_M_aa_t_5;  /* total_rus_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + rus_M_aa_t_6 : rus_M_aa_t_6;  /* total_rus_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + rus_U_in_base_x : rus_U_in_base_x;  /* total_rus_x */
-        terms[22*count + k] = add ? terms[22*count + k] + rus_U_in_base_y : rus_U_in_base_y;  /* total_rus_y */
-        terms[23*count + k] = add ? terms[23*count + k] + rus_U_in_base_z : rus_U_in_base_z;  /* total_rus_z */
-        terms[24*count + k] = add ? terms[24*count + k] + rus_Z_a_t : rus_Z_a_t;  /* total_rus_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + rus_Z_a_t_2 : rus_Z_a_t_2;  /* total_rus_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + rus_Z_a_t_3 : rus_Z_a_t_3;  /* total_rus_z_2 */
-        o[0*count + k] = -rus_w_1_t_3;
-        o[1*count + k] = -rus_w_1_t_4;
-        o[2*count + k] = -rus_w_1_t_5;
+        const real rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9;
+        const real rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7;
+        const real rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_xx : rus_Q_xx;  /* M_tt_rus_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_xy : rus_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_xz : rus_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_yy : rus_Q_yy;  /* M_tt_rus_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_yz : rus_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_zz : rus_Q_zz;  /* M_tt_rus_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + rus_M_ta_t_3 : rus_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + rus_M_ta_t_4 : rus_M_ta_t_4;  /* M_ta_rus_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + rus_M_ta_t_5 : rus_M_ta_t_5;  /* M_ta_rus_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + rus_M_ta_t_6 : rus_M_ta_t_6;  /* M_ta_rus_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + rus_M_ta_t_8 : rus_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + rus_M_ta_t_9 : rus_M_ta_t_9;  /* M_ta_rus_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + rus_M_ta_t_10 : rus_M_ta_t_10;  /* M_ta_rus_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + rus_M_ta_t_11 : rus_M_ta_t_11;  /* M_ta_rus_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + rus_M_ta_t_12 : rus_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + rus_M_aa_t : rus_M_aa_t;  /* M_aa_rus_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + rus_M_aa_t_2 : rus_M_aa_t_2;  /* M_aa_rus_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + rus_M_aa_t_3 : rus_M_aa_t_3;  /* M_aa_rus_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + rus_M_aa_t_4 : rus_M_aa_t_4;  /* M_aa_rus_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + rus_M_aa_t_5 : rus_M_aa_t_5;  /* M_aa_rus_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + rus_M_aa_t_6 : rus_M_aa_t_6;  /* M_aa_rus_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + rus_U_x : rus_U_x;  /* Z_t_rus_x */
+        terms[22*count + k] = add ? terms[22*count + k] + rus_U_y : rus_U_y;  /* Z_t_rus_y */
+        terms[23*count + k] = add ? terms[23*count + k] + rus_U_z : rus_U_z;  /* Z_t_rus_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + rus_Z_a_t : rus_Z_a_t;  /* Z_a_rus_x */
+        terms[25*count + k] = add ? terms[25*count + k] + rus_Z_a_t_2 : rus_Z_a_t_2;  /* Z_a_rus_y */
+        terms[26*count + k] = add ? terms[26*count + k] + rus_Z_a_t_3 : rus_Z_a_t_3;  /* Z_a_rus_z */
+        /* (rus-w_1) reciprocal vector 1 */
+        o[0*count + k] = -rus_w_1_t_7;
+        o[1*count + k] = -rus_w_1_t_8;
+        o[2*count + k] = -rus_w_1_t_9;
+        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rus_H_a_1_x;
         o[4*count + k] = rus_H_a_1_y;
         o[5*count + k] = rus_H_a_1_z;
-        o[8*count + k] = (rus_w_1_t_3 + (rus_w_1_t_4 + rus_w_1_t_5)) + (rus_H_a_1_x + (rus_H_a_1_y
+        o[8*count + k] = (rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9)) + (rus_H_a_1_x + (rus_H_a_1_y
             + rus_H_a_1_z));
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+        o[7*count + k] = UNLESS(magnitude(rus_J_3_t_12) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(rus_J_3_t_18) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
-        o[6*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[6*count + k] = UNLESS(rus_J_3_t_13 >= 0);
     }
 }
 
@@ -1985,101 +2019,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rus_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rus_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rus_xx;
-        const real total_rus_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_rus_yy;
-        const real total_rus_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_rus_zz;
+        const real M_tt_xx = M_tt_rus_xx + m_star;
+        const real M_tt_rus_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_rus_yy + m_star;
+        const real M_tt_rus_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_rus_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_rus_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_rus_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_rus_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_rus_xz_2 - h_star_in_base_y;
-        const real total_rus_yx = sums[9*w + k];
-        const real M_ta_yx = total_rus_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_rus_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_rus_yz_2;
-        const real total_rus_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_rus_zx;
-        const real total_rus_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_rus_zy;
+        const real M_ta_rus_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_rus_xy + h_star_z;
+        const real M_ta_rus_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_rus_xz - h_star_y;
+        const real M_ta_rus_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_rus_yx - h_star_z;
+        const real M_ta_rus_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_rus_yz + h_star_x;
+        const real M_ta_rus_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_rus_zx + h_star_y;
+        const real M_ta_rus_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_rus_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_rus_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_rus_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_rus_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_rus_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_rus_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_rus_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_rus_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_rus_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_rus_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_rus_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_rus_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_rus_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_rus_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_rus_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_rus_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_rus_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_rus_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_rus_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_rus_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_rus_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_rus_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_rus_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_rus_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rus_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_rus_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_rus_x;
+        const real Z_t_rus_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rus_x;
         const real Z_p_y = s[28*w + k];
-        const real total_rus_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_rus_y;
+        const real Z_t_rus_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rus_y;
         const real Z_p_z = s[29*w + k];
-        const real total_rus_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_rus_z;
+        const real Z_t_rus_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_rus_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_rus_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_rus_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_rus_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_rus_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_rus_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_rus_z_2;
+        const real Z_a_rus_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_rus_x + Z_q_x;
+        const real Z_a_rus_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_rus_y + Z_q_y;
+        const real Z_a_rus_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_rus_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rus_xy = sums[1*w + k];
-        M[1*w + k] = -total_rus_xy;
-        M[6*w + k] = -total_rus_xy;
-        const real total_rus_xz = sums[2*w + k];
-        M[2*w + k] = -total_rus_xz;
-        M[12*w + k] = -total_rus_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_rus_yz = sums[4*w + k];
-        M[8*w + k] = -total_rus_yz;
-        M[13*w + k] = -total_rus_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_rus_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_rus_xx_2;
-        M[18*w + k] = total_rus_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_rus_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_rus_yy_2;
-        M[25*w + k] = -total_rus_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_rus_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_rus_zz_2;
-        M[32*w + k] = -total_rus_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2089,17 +2126,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_rus_xy + total_rus_xz)) + (M_tt_yy + (total_rus_yz +
-            M_tt_zz))) + ((total_rus_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_rus_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_rus_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -2170,37 +2208,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2213,15 +2257,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2232,278 +2276,273 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
+        /* (rus-J_3) inertia tensor of link 3 about the connection point */
         const real R_xx = s[3*w + j];
         const real R_xy = s[4*w + j];
         const real R_xz = s[5*w + j];
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
-        /* (rus-px_1) component along the reference direction */
+        const real rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z;
+        const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
+            rus_J_3_t_5*rus_J_3_t_5;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_J_3_t_8 = rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx;
         const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-py_1) component across the reference direction */
+        const real rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x;
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
+        const real rus_J_3_t_10 = rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy;
+        const real rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x;
+        const real rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9;
+        const real rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7;
         const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
+        const real rus_J_3_t_14 = root(rus_J_3_t_13)*rus_branch_1;
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x;
         const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
+        const real rus_J_3_t_16 = rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
+            rus_J_3_t_5*rus_base_frame_zz;
+        const real rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
             rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17;
         const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
+        const real rus_J_3_t_19 = root(rus_J_3_t_18)*rus_branch_2;
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
+        const real rus_e_1_in_axes3_y =
+            -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x;
+        const real rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_J_3_in_axes2_xz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y;
+        const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
+        const real rus_J_3_in_axes1_zz =
+            rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
+            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
+        const real inv_rus_J_3_t_12 = 1/rus_J_3_t_12;
+        const real rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 -
+            rus_J_3_t_11*rus_J_3_t_14);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        const real rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 +
+            rus_J_3_t_14*rus_J_3_t_9);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_J_3_t_18 = 1/rus_J_3_t_18;
+        const real rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z;
+        const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+        const real rus_v_1_in_axes3_z = rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t +
+            rus_e_1_in_axes3_y*rus_r_1_in_axes1_z) -
+            rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
+            rus_e_1_in_axes3_y*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
         /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
-        const real rus_w_2_t = inv_rus_r_1_t*inv_rus_v_1_t*rus_v_1_z;
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
         /* (rus-w_3) reciprocal vector 3 */
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_w_3_t = inv_rus_platform_joint_offset_x*inv_rus_v_1_t*rus_v_1_t_2;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y;
         /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rus_d_alpha_3_t = inv_rus_r_1_t*rus_s_3;
-        const real rus_d_alpha_3_t_2 = inv_rus_r_1_t*rus_c_3;
-        /* (rus-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_L_c_3_r0_y = rus_J_3_xy*rus_s_3 + rus_J_3_yz*rus_c_3;
+        const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
+        const real rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z;
         /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real rus_d_Gamma_3_t_2 = inv_rus_r_1_t*rus_L_c_3_r0_y;
+        const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z;
         const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_d_Gamma_3_x = rus_h_3_z - inv_rus_v_1_t*(rus_L_c_3_r0_y +
-            rus_d_Gamma_3_t*rus_v_1_t_2 - rus_d_Gamma_3_t_2*rus_v_1_z);
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_J_3_xx = m->rus_J_3_xx[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_zz = m->rus_J_3_zz[i];
-        const real rus__y = rus_s_3*(rus_J_3_xx*rus_s_3 + rus_J_3_xz*rus_c_3) -
-            rus_c_3*(-rus_J_3_xz*rus_s_3 - rus_J_3_zz*rus_c_3);
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
+            inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz + rus_d_Gamma_3_t*rus_v_1_t_3 -
+            rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z);
         /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_d_Gamma_2_t = rus_c_3*rus_h_3_y;
-        const real rus_d_Gamma_2_t_2 = inv_rus_r_1_t*rus__y;
-        const real rus_d_Gamma_2_t_3 = inv_rus_platform_joint_offset_x*rus_L_c_3_r0_y;
-        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_z;
-        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_2;
-        const real rus_d_Gamma_2_x = -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus__y + rus_d_Gamma_2_t_5
-            - rus_d_Gamma_2_t_4);
-        const real rus_d_Gamma_2_y = rus_d_Gamma_2_t_3 - rus_h_3_y*rus_s_3;
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_d_Gamma_2_z = rus_d_Gamma_2_t_2 + rus_c_3*rus_h_3_x - rus_h_3_z*rus_s_3;
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
+        const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y;
+        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
+        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3;
+        const real rus_d_Gamma_2_in_axes3_x = rus_d_Gamma_2_t -
+            inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4);
+        const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_e_1_in_axes3_y*rus_h_3_in_spec3_x;
         /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_d_Gamma_1_x = -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus_J_1_zz + rus__y +
-            rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_d_Gamma_1_in_axes3_x = rus_d_Gamma_2_t -
+            inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 -
+            rus_d_Gamma_2_t_4);
         /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rus_d_c_xx = inv_rus_v_1_t*rus_d_Gamma_1_x + rus_d_Gamma_3_x*rus_w_3_t +
-            rus_h_3_z*rus_w_3_t - rus_d_Gamma_2_x*rus_w_2_t - rus_h_3_y*(inv_rus_v_1_t*rus_c_3 -
-            rus_c_3*rus_w_2_t);
-        const real rus_d_Gamma_3_y = m->rus_d_Gamma_3_y[i];
-        const real rus_d_phi_3_t = m->rus_d_phi_3_t[i];
-        const real rus_d_c_xy = inv_rus_v_1_t*rus_d_Gamma_2_y + rus_d_Gamma_3_y*rus_w_3_t -
-            rus_d_phi_3_t - rus_d_Gamma_2_y*rus_w_2_t;
-        const real rus_d_c_xz = inv_rus_v_1_t*rus_d_Gamma_2_z + rus_d_Gamma_3_t_2*rus_w_3_t +
-            rus_d_alpha_3_t_2*rus_h_3_y - rus_d_Gamma_2_z*rus_w_2_t;
-        const real rus_d_c_yz = rus_d_alpha_3_t*rus_h_3_y -
-            inv_rus_platform_joint_offset_x*rus_d_Gamma_3_t_2;
+        const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x +
+            rus_d_Gamma_3_in_axes3_x*rus_w_3_t + rus_h_3_in_spec3_z*rus_w_3_t -
+            rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
+            inv_rus_v_1_t_2*rus_e_1_in_axes3_y);
+        const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
+        const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
+        const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y +
+            rus_d_Gamma_3_in_axes3_y*rus_w_3_t - rus_d_phi_3_in_axes3_xy -
+            rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
+        const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y;
+        const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rus_d_c_yy = m->rus_d_c_yy[i];
-        const real rus_Q_t = rus_d_c_xx - rus_d_c_yy;
-        const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-        const real rus_Q_t_3 = rus_d_c_xx + inv_rus_r_1_t*rus_d_Gamma_2_z +
-            rus_d_alpha_3_t_2*rus_h_3_x - rus_d_alpha_3_t*rus_h_3_z;
-        const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-        const real rus_Q_t_5 = axis_x_rus_axes3_x*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_x*rus_d_c_yz - axis_y_rus_axes3_in_base_x*rus_Q_t_2;
-        const real rus_Q_t_6 = axis_x_rus_axes3_y*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_y*rus_d_c_yz - axis_y_rus_axes3_in_base_y*rus_Q_t_2;
-        const real rus_Q_t_7 = axis_x_rus_axes3_z*rus_d_c_xy +
-            axis_z_rus_axes3_in_base_z*rus_d_c_yz - axis_y_rus_axes3_in_base_z*rus_Q_t_2;
-        const real rus_Q_t_8 = axis_z_rus_axes3_in_base_x*rus_Q_t_4 -
-            axis_x_rus_axes3_x*rus_d_c_xz;
-        const real rus_Q_t_9 = axis_z_rus_axes3_in_base_y*rus_Q_t_4 -
-            axis_x_rus_axes3_y*rus_d_c_xz;
-        const real rus_Q_t_10 = axis_z_rus_axes3_in_base_z*rus_Q_t_4 -
-            axis_x_rus_axes3_z*rus_d_c_xz;
-        const real rus_Q_t_11 = axis_y_rus_axes3_in_base_x*rus_Q_t_5 -
-            axis_z_rus_axes3_in_base_x*rus_Q_t_8;
-        const real rus_Q_t_12 = 2*rus_Q_t_11 + rus_d_c_xx;
-        const real rus_Q_t_13 = axis_y_rus_axes3_in_base_x*rus_Q_t_6 +
-            axis_y_rus_axes3_in_base_y*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_9 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_8;
-        const real rus_Q_t_14 = axis_y_rus_axes3_in_base_x*rus_Q_t_7 +
-            axis_y_rus_axes3_in_base_z*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_10 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_8;
-        const real rus_Q_t_15 = axis_y_rus_axes3_in_base_y*rus_Q_t_6 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_9;
-        const real rus_Q_t_16 = 2*rus_Q_t_15 + rus_d_c_xx;
-        const real rus_Q_t_17 = axis_y_rus_axes3_in_base_y*rus_Q_t_7 +
-            axis_y_rus_axes3_in_base_z*rus_Q_t_6 - axis_z_rus_axes3_in_base_y*rus_Q_t_10 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_9;
-        const real rus_Q_t_18 = axis_y_rus_axes3_in_base_z*rus_Q_t_7 -
-            axis_z_rus_axes3_in_base_z*rus_Q_t_10;
-        const real rus_Q_t_19 = 2*rus_Q_t_18 + rus_d_c_xx;
+        const real rus_Q_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_Q_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy;
+        const real axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy;
+        const real axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy;
+        const real rus_Q_t_3 = rus_e_1_in_axes3_x*rus_s_2;
+        const real rus_Q_t_4 = rus_c_2*rus_e_1_in_axes3_x;
+        const real rus_Q_t_5 = rus_Q_t_3*rus_c_1 + rus_Q_t_4*rus_s_1;
+        const real rus_Q_t_6 = rus_Q_t_3*rus_s_1 - rus_Q_t_4*rus_c_1;
+        const real axis_y_rus_axes3_x = rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy
+            + rus_base_frame_xz*rus_e_1_in_axes3_y;
+        const real axis_y_rus_axes3_y = rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy
+            + rus_base_frame_yz*rus_e_1_in_axes3_y;
+        const real axis_y_rus_axes3_z = rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy
+            + rus_base_frame_zz*rus_e_1_in_axes3_y;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
+        const real rus_Q_t_7 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
+        const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
+        const real rus_Q_t_9 = rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
+            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x;
+        const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
+        const real rus_Q_t_11 = axis_x_rus_axes3_x*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_x*rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
+        const real rus_Q_t_12 = axis_x_rus_axes3_y*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_y*rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
+        const real rus_Q_t_13 = axis_x_rus_axes3_z*rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_z*rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
+        const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
+            axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
+            axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
+            axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+        const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
+        const real rus_Q_xx = -2*rus_Q_t_17 - rus_d_c_in_axes3_xx;
+        const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
+            axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
+        const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
+            axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
+        const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
+        const real rus_Q_yy = -2*rus_Q_t_18 - rus_d_c_in_axes3_xx;
+        const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
+            axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
+        const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
+        const real rus_Q_zz = -2*rus_Q_t_19 - rus_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real rus_M_ta_t = rus_Q_t_13*rus_q_in_base_z;
-        const real rus_M_ta_t_2 = rus_Q_t_14*rus_q_in_base_y;
-        const real rus_M_ta_t_3 = rus_M_ta_t - rus_M_ta_t_2;
-        const real rus_M_ta_t_4 = rus_Q_t_12*rus_q_in_base_z - rus_Q_t_14*rus_q_in_base_x;
-        const real rus_M_ta_t_5 = rus_Q_t_12*rus_q_in_base_y - rus_Q_t_13*rus_q_in_base_x;
-        const real rus_M_ta_t_6 = rus_Q_t_16*rus_q_in_base_z - rus_Q_t_17*rus_q_in_base_y;
-        const real rus_M_ta_t_7 = rus_Q_t_17*rus_q_in_base_x;
-        const real rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7;
-        const real rus_M_ta_t_9 = rus_Q_t_13*rus_q_in_base_y - rus_Q_t_16*rus_q_in_base_x;
-        const real rus_M_ta_t_10 = rus_Q_t_17*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_y;
-        const real rus_M_ta_t_11 = rus_Q_t_14*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_x;
+        const real rus_M_ta_t = -rus_Q_xy*rus_q_z;
+        const real rus_M_ta_t_2 = rus_Q_xz*rus_q_y;
+        const real rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2;
+        const real rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x;
+        const real rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y;
+        const real rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z;
+        const real rus_M_ta_t_7 = rus_Q_yz*rus_q_x;
+        const real rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7;
+        const real rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y;
+        const real rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z;
+        const real rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x;
         const real rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real rus_M_aa_t = rus_M_ta_t_6*rus_q_in_base_z - rus_M_ta_t_10*rus_q_in_base_y;
-        const real rus_M_aa_t_2 = rus_M_ta_t_8*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_y;
-        const real rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_in_base_y + rus_M_ta_t_9*rus_q_in_base_z;
-        const real rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_x;
-        const real rus_M_aa_t_5 = rus_M_ta_t_12*rus_q_in_base_x + rus_M_ta_t_5*rus_q_in_base_z;
-        const real rus_M_aa_t_6 = rus_M_ta_t_5*rus_q_in_base_y - rus_M_ta_t_9*rus_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_t_12 : rus_Q_t_12;  /* total_rus_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_t_13 : rus_Q_t_13;  /* total_rus_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_t_14 : rus_Q_t_14;  /* total_rus_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_t_16 : rus_Q_t_16;  /* total_rus_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_t_17 : rus_Q_t_17;  /* total_rus_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_t_19 : rus_Q_t_19;  /* total_rus_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rus_M_ta_t_3 : rus_M_ta_t_3;  /* total_rus_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + rus_M_ta_t_4 : rus_M_ta_t_4;  /* total_rus_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + rus_M_ta_t_5 : rus_M_ta_t_5;  /* total_rus_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + rus_M_ta_t_6 : rus_M_ta_t_6;  /* total_rus_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + rus_M_ta_t_8 : rus_M_ta_t_8;  /* total_rus_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + rus_M_ta_t_9 : rus_M_ta_t_9;  /* total_rus_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + rus_M_ta_t_10 : rus_M_ta_t_10;  /* total_rus_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rus_M_ta_t_11 : rus_M_ta_t_11;  /* total_rus_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + rus_M_ta_t_12 : rus_M_ta_t_12;  /* total_rus_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + rus_M_aa_t : rus_M_aa_t;  /* total_rus_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + rus_M_aa_t_2 : rus_M_aa_t_2;  /* total_rus_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + rus_M_aa_t_3 : rus_M_aa_t_3;  /* total_rus_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + rus_M_aa_t_4 : rus_M_aa_t_4;  /* total_rus_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + rus_M_aa_t_5 : rus_M_aa_t_5;  /* total_rus_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + rus_M_aa_t_6 : rus_M_aa_t_6;  /* total_rus_zz_3 */
+        const real rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z;
+        const real rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y + rus_M_ta_t_8*rus_q_z;
+        const real rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z;
+        const real rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x;
+        const real rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x;
+        const real rus_M_aa_t_6 = rus_M_ta_t_9*rus_q_x - rus_M_ta_t_5*rus_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_Q_xx : rus_Q_xx;  /* M_tt_rus_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rus_Q_xy : rus_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rus_Q_xz : rus_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + rus_Q_yy : rus_Q_yy;  /* M_tt_rus_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + rus_Q_yz : rus_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rus_Q_zz : rus_Q_zz;  /* M_tt_rus_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + rus_M_ta_t_3 : rus_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + rus_M_ta_t_4 : rus_M_ta_t_4;  /* M_ta_rus_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + rus_M_ta_t_5 : rus_M_ta_t_5;  /* M_ta_rus_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + rus_M_ta_t_6 : rus_M_ta_t_6;  /* M_ta_rus_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + rus_M_ta_t_8 : rus_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + rus_M_ta_t_9 : rus_M_ta_t_9;  /* M_ta_rus_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + rus_M_ta_t_10 : rus_M_ta_t_10;  /* M_ta_rus_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + rus_M_ta_t_11 : rus_M_ta_t_11;  /* M_ta_rus_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + rus_M_ta_t_12 : rus_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + rus_M_aa_t : rus_M_aa_t;  /* M_aa_rus_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + rus_M_aa_t_2 : rus_M_aa_t_2;  /* M_aa_rus_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + rus_M_aa_t_3 : rus_M_aa_t_3;  /* M_aa_rus_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + rus_M_aa_t_4 : rus_M_aa_t_4;  /* M_aa_rus_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + rus_M_aa_t_5 : rus_M_aa_t_5;  /* M_aa_rus_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + rus_M_aa_t_6 : rus_M_aa_t_6;  /* M_aa_rus_zz */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+        o[1*count + k] = UNLESS(magnitude(rus_J_3_t_12) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(rus_J_3_t_18) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
-        o[0*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[0*count + k] = UNLESS(rus_J_3_t_13 >= 0);
     }
 }
 
@@ -2520,81 +2559,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rus_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rus_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rus_xx;
-        const real total_rus_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_rus_yy;
-        const real total_rus_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_rus_zz;
+        const real M_tt_xx = M_tt_rus_xx + m_star;
+        const real M_tt_rus_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_rus_yy + m_star;
+        const real M_tt_rus_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_rus_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_rus_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_rus_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_rus_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_rus_xz_2 - h_star_in_base_y;
-        const real total_rus_yx = sums[9*w + k];
-        const real M_ta_yx = total_rus_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_rus_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_rus_yz_2;
-        const real total_rus_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_rus_zx;
-        const real total_rus_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_rus_zy;
+        const real M_ta_rus_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_rus_xy + h_star_z;
+        const real M_ta_rus_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_rus_xz - h_star_y;
+        const real M_ta_rus_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_rus_yx - h_star_z;
+        const real M_ta_rus_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_rus_yz + h_star_x;
+        const real M_ta_rus_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_rus_zx + h_star_y;
+        const real M_ta_rus_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_rus_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_rus_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_rus_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_rus_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_rus_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_rus_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_rus_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_rus_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_rus_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_rus_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_rus_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_rus_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_rus_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_rus_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_rus_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_rus_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_rus_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_rus_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_rus_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_rus_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_rus_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_rus_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_rus_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_rus_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rus_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rus_xy = sums[1*w + k];
-        M[1*w + k] = -total_rus_xy;
-        M[6*w + k] = -total_rus_xy;
-        const real total_rus_xz = sums[2*w + k];
-        M[2*w + k] = -total_rus_xz;
-        M[12*w + k] = -total_rus_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_rus_yz = sums[4*w + k];
-        M[8*w + k] = -total_rus_yz;
-        M[13*w + k] = -total_rus_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_rus_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_rus_xx_2;
-        M[18*w + k] = total_rus_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_rus_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_rus_yy_2;
-        M[25*w + k] = -total_rus_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_rus_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_rus_zz_2;
-        M[32*w + k] = -total_rus_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2604,10 +2646,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_rus_xy) + (total_rus_xz + (M_tt_yy + total_rus_yz))) +
-            ((M_tt_zz + total_rus_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_rus_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_rus_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2690,16 +2732,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2710,30 +2755,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2755,9 +2809,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2775,48 +2829,48 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
+        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -2826,244 +2880,257 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
         /* (rus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y;
+        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
         const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x;
+        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
+        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
         const real t_dot_x = s[12*w + j];
         const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x +
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3;
+        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
+        /* (rus-w_1) reciprocal vector 1 */
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+        /* (rus-w_2) reciprocal vector 2 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
+            rus_base_frame_xy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
+            rus_base_frame_yy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
+            rus_base_frame_zy*rus_qd_1_t_2;
+        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
+        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
+            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
+            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
+            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
             axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_dot_y + axis_y_rus_axes3_in_base_z*rus_S_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
+        /* (rus-omega_1) angular velocity of link 1 */
+        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
+        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
         /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
-        /* (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3;
-        const real rus_zeta_3_y = rus_omega_2_t*rus_qd_3;
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
+        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        /* (rus-W_3) centripetal tensor of link 3 */
+        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-u_1) centripetal acceleration of the connection point */
         const real rus_u_1_x = omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
         const real rus_u_1_y = omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
         const real rus_u_1_z = omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_t = rus_omega_2_t*rus_omega_2_t;
-        const real rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2;
-        const real rus_W_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
+        const real rus_u_1_in_axes3_x = axis_x_rus_axes3_x*rus_u_1_x +
+            axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z;
+        const real rus_u_1_in_axes3_y = axis_y_rus_axes3_x*rus_u_1_x +
+            axis_y_rus_axes3_y*rus_u_1_y + axis_y_rus_axes3_z*rus_u_1_z;
+        const real rus_u_1_in_axes3_z = axis_z_rus_axes3_x*rus_u_1_x +
+            axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_platform_joint_offset_x*rus_zeta_3_y - rus_bias_t*rus_omega_1_t*rus_omega_1_t -
-            rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
-        /* (rus-u_1) centripetal acceleration of the connection point */
-        const real rus_u_1_tip_x = axis_x_rus_axes3_x*rus_u_1_x + axis_x_rus_axes3_y*rus_u_1_y +
-            axis_x_rus_axes3_z*rus_u_1_z;
-        const real rus_u_1_tip_y = axis_y_rus_axes3_in_base_x*rus_u_1_x +
-            axis_y_rus_axes3_in_base_y*rus_u_1_y + axis_y_rus_axes3_in_base_z*rus_u_1_z;
-        const real rus_u_1_tip_z = axis_z_rus_axes3_in_base_x*rus_u_1_x +
-            axis_z_rus_axes3_in_base_y*rus_u_1_y + axis_z_rus_axes3_in_base_z*rus_u_1_z;
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
+            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+            rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rus_rel_o_x = rus_u_1_tip_x - rus_bias_x;
-        const real rus_rel_o_y = rus_u_1_tip_y - rus_bias_y;
-        const real rus_rel_o_z = rus_u_1_tip_z - rus_bias_z;
+        const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
+        const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y;
+        const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z;
+        /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rus_qdd_1_o_t = inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
         /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real rus_qdd_1_o = inv_rus_v_1_t*rus_rel_o_x;
-        const real rus_qdd_3_o = inv_rus_platform_joint_offset_x*(rus_qdd_1_o*rus_v_1_t_2 -
-            rus_rel_o_y);
+        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_3 -
+            rus_rel_o_in_axes3_y);
         /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rus_alpha_2_o_z = inv_rus_r_1_t*(rus_rel_o_z + rus_qdd_1_o*rus_v_1_z) -
-            rus_qdd_1_o;
-        const real rus_alpha_2_o_t = rus_alpha_2_o_z*rus_s_3;
-        const real rus_alpha_2_o_t_2 = rus_alpha_2_o_z*rus_c_3;
+        const real rus_alpha_2_o_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
+            rus_qdd_1_o_t*rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
+        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_s_3;
+        const real rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_c_3;
         /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real rus_alpha_3_o_x = rus_alpha_2_o_t - rus_zeta_3_x;
-        const real rus_alpha_3_o_y = -rus_alpha_2_o_t_2 - rus_zeta_3_y;
+        const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
+        const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
         /* (rus-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rus_B_3_o_xy = rus_qdd_3_o - rus_W_3_xy;
-        const real rus_B_3_o_yx = -rus_W_3_xy - rus_qdd_3_o;
-        const real rus_B_3_o_zx = rus_zeta_3_y - rus_alpha_3_o_y;
-        const real rus_B_3_o_zy = rus_alpha_3_o_x - rus_zeta_3_x;
+        const real rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o;
+        const real rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o;
+        const real rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y;
+        const real rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x;
         /* (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rus_acc_3_o_x = rus_u_1_tip_x - axis_x_rus_axes3_x*gravity_x -
+        const real rus_acc_3_o_in_axes3_x = rus_u_1_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
             axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_o_y = rus_u_1_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z;
-        const real rus_acc_3_o_z = rus_u_1_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z;
+        const real rus_acc_3_o_in_axes3_y = rus_u_1_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
+            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
+        const real rus_acc_3_o_in_axes3_z = rus_u_1_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
+            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
         /* (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_Sigma_3_yy = m->rus_Sigma_3_yy[i];
-        const real rus_Sigma_3_zz = m->rus_Sigma_3_zz[i];
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_mu_3_o_x = rus_B_3_o_yx*rus_J_3_xy + rus_B_3_o_zx*rus_J_3_xz +
-            rus_B_3_o_zy*rus_Sigma_3_yy + rus_Sigma_3_zz*rus_alpha_2_o_t - rus_J_3_yz*(rus_W_3_t_2
-            - rus_W_3_t_3) - rus_acc_3_o_y*rus_h_3_y - rus_acc_3_o_z*rus_h_3_z;
-        const real rus_Sigma_3_xx = m->rus_Sigma_3_xx[i];
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_mu_3_o_y = rus_B_3_o_xy*rus_J_3_yz + rus_acc_3_o_x*rus_h_3_y -
-            rus_B_3_o_zx*rus_Sigma_3_xx - rus_B_3_o_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t -
-            rus_W_3_t_3) - rus_Sigma_3_zz*rus_alpha_2_o_t_2 - rus_acc_3_o_z*rus_h_3_x;
-        const real rus_mu_3_o_z = rus_B_3_o_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_o_t +
-            rus_J_3_yz*rus_alpha_2_o_t_2 + rus_acc_3_o_x*rus_h_3_z + rus_acc_3_o_y*rus_h_3_x -
-            rus_B_3_o_xy*rus_Sigma_3_yy - rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2);
-        const real rus_mu_3_o_r0_y = rus_mu_3_o_x*rus_s_3 - rus_c_3*rus_mu_3_o_y;
+        const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+        const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+        const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_mu_3_o_in_axes3_x = rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy +
+            rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
+            rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2
+            - rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_z;
+        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_mu_3_o_in_axes3_y = rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y +
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
+            rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_x;
+        const real rus_mu_3_o_in_axes3_z = rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x +
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_x
+            - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
+            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y;
+        const real rus_mu_3_o_in_axes1_z = rus_c_3*rus_mu_3_o_in_axes3_y +
+            rus_mu_3_o_in_axes3_x*rus_s_3;
         /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_mu_1_o_z = rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) -
-            rus_J_1_zz*rus_qdd_1_o - rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+        const real rus_mu_1_o_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_o_t -
+            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
         /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rus_N_1_o_z = rus_mu_1_o_z + rus_mu_3_o_r0_y;
+        const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rus_G_o_t = inv_rus_r_1_t*rus_mu_3_o_r0_y;
-        const real rus_G_o_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_o_z;
+        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rus_c_o_x = inv_rus_v_1_t*(rus_N_1_o_z + rus_G_o_t_2*rus_v_1_t_2 -
-            rus_G_o_t*rus_v_1_z) + rus_B_3_o_xy*rus_h_3_z + rus_alpha_2_o_t_2*rus_h_3_y +
-            rus_h_3_x*(rus_W_3_t_2 + rus_W_3_t_3);
-        const real rus_c_o_y = rus_alpha_2_o_t*rus_h_3_y - rus_G_o_t_2 - rus_B_3_o_yx*rus_h_3_x -
-            rus_h_3_z*(rus_W_3_t + rus_W_3_t_3);
-        const real rus_c_o_z = rus_B_3_o_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) -
-            rus_G_o_t - rus_B_3_o_zx*rus_h_3_x;
+        const real rus_c_o_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
+            rus_G_o_in_axes3_y*rus_v_1_t_3 - rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) +
+            rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
+            rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_G_o_in_axes3_y - rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x -
+            rus_h_3_in_spec3_z*(rus_mu_3_o_t + rus_mu_3_o_t_3);
+        const real rus_c_o_in_axes3_z = rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_y*(rus_mu_3_o_t + rus_mu_3_o_t_2) - rus_G_o_in_axes3_z -
+            rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x;
         /* (rus-U) velocity and gravity terms of the leg force */
-        const real rus_U_in_base_x = -axis_x_rus_axes3_x*rus_c_o_x -
-            axis_y_rus_axes3_in_base_x*rus_c_o_y - axis_z_rus_axes3_in_base_x*rus_c_o_z;
-        const real rus_U_in_base_y = -axis_x_rus_axes3_y*rus_c_o_x -
-            axis_y_rus_axes3_in_base_y*rus_c_o_y - axis_z_rus_axes3_in_base_y*rus_c_o_z;
-        const real rus_U_in_base_z = -axis_x_rus_axes3_z*rus_c_o_x -
-            axis_y_rus_axes3_in_base_z*rus_c_o_y - axis_z_rus_axes3_in_base_z*rus_c_o_z;
+        const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
+        const real rus_U_y = -axis_x_rus_axes3_y*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_y*rus_c_o_in_axes3_y - axis_z_rus_axes3_y*rus_c_o_in_axes3_z;
+        const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
+            axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real rus_Z_a_t = rus_U_in_base_z*rus_q_in_base_y - rus_U_in_base_y*rus_q_in_base_z;
-        const real rus_Z_a_t_2 = rus_U_in_base_x*rus_q_in_base_z -
-            rus_U_in_base_z*rus_q_in_base_x;
-        const real rus_Z_a_t_3 = rus_U_in_base_y*rus_q_in_base_x -
-            rus_U_in_base_x*rus_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rus_U_in_base_x : rus_U_in_base_x;  /* total_rus_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_U_in_base_y : rus_U_in_base_y;  /* total_rus_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_U_in_base_z : rus_U_in_base_z;  /* total_rus_z */
-        terms[3*count + k] = add ? terms[3*count + k] + rus_Z_a_t : rus_Z_a_t;  /* total_rus_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + rus_Z_a_t_2 : rus_Z_a_t_2;  /* total_rus_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + rus_Z_a_t_3 : rus_Z_a_t_3;  /* total_rus_z_2 */
+        const real rus_Z_a_t = rus_U_z*rus_q_y - rus_U_y*rus_q_z;
+        const real rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x;
+        const real rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_U_x : rus_U_x;  /* Z_t_rus_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rus_U_y : rus_U_y;  /* Z_t_rus_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rus_U_z : rus_U_z;  /* Z_t_rus_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + rus_Z_a_t : rus_Z_a_t;  /* Z_a_rus_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rus_Z_a_t_2 : rus_Z_a_t_2;  /* Z_a_rus_y */
+        terms[5*count + k] = add ? terms[5*count + k] + rus_Z_a_t_3 : rus_Z_a_t_3;  /* Z_a_rus_z */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
         o[0*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -3082,27 +3149,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_rus_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_rus_x;
+        const real Z_t_rus_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rus_x;
         const real Z_p_y = s[19*w + k];
-        const real total_rus_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_rus_y;
+        const real Z_t_rus_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rus_y;
         const real Z_p_z = s[20*w + k];
-        const real total_rus_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_rus_z;
+        const real Z_t_rus_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_rus_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_rus_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_rus_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_rus_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_rus_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_rus_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_rus_z_2;
+        const real Z_a_rus_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_rus_x + Z_q_x;
+        const real Z_a_rus_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_rus_y + Z_q_y;
+        const real Z_a_rus_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_rus_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -3203,48 +3272,48 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
+        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -3254,91 +3323,89 @@ INLINE void H_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*(rus_c_2*rus_r_1_x - rus_c_2*rus_r_1_t*rus_s_2);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2);
         /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
         const real inv_rus_v_1_t = 1/rus_v_1_t;
-        const real rus_w_1_t_3 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y);
-        const real rus_w_1_t_4 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z);
-        const real rus_w_1_t_5 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x);
+        const real rus_w_1_t_7 = inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y);
+        const real rus_w_1_t_8 = inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z);
+        const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x);
         /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        const real rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5;
-        const real rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3;
-        const real rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4;
-        o[0*count + k] = -rus_w_1_t_3;
-        o[1*count + k] = -rus_w_1_t_4;
-        o[2*count + k] = -rus_w_1_t_5;
+        const real rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9;
+        const real rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7;
+        const real rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8;
+        /* (rus-w_1) reciprocal vector 1 */
+        o[0*count + k] = -rus_w_1_t_7;
+        o[1*count + k] = -rus_w_1_t_8;
+        o[2*count + k] = -rus_w_1_t_9;
+        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rus_H_a_1_x;
         o[4*count + k] = rus_H_a_1_y;
         o[5*count + k] = rus_H_a_1_z;
-        o[8*count + k] = (rus_w_1_t_3 + (rus_w_1_t_4 + rus_w_1_t_5)) + (rus_H_a_1_x + (rus_H_a_1_y
+        o[8*count + k] = (rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9)) + (rus_H_a_1_x + (rus_H_a_1_y
             + rus_H_a_1_z));
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
             TOLERANCE*rus_size);
         o[6*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -3445,33 +3512,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3479,31 +3533,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3531,9 +3611,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3551,48 +3631,48 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
+        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -3602,261 +3682,275 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
         /* (rus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y;
+        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
         const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x;
+        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
+        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
         const real t_dot_x = s[12*w + j];
         const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x +
-            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_dot_y + axis_y_rus_axes3_in_base_z*rus_S_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
-        /* (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3;
-        const real rus_zeta_3_y = rus_omega_2_t*rus_qd_3;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_t = rus_omega_2_t*rus_omega_2_t;
-        const real rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2;
-        const real rus_W_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_platform_joint_offset_x*rus_zeta_3_y - rus_bias_t*rus_omega_1_t*rus_omega_1_t -
-            rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3;
+        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t;
-        const real rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t;
-        const real rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t;
-        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        const real rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5;
-        const real rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3;
-        const real rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4;
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
+        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
+        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
+        /* (rus-w_2) reciprocal vector 2 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
+            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
+        /* (rus-omega_1) angular velocity of link 1 */
+        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
+        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        /* (rus-omega_2) angular velocity of link 2 */
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
+        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        /* (rus-W_3) centripetal tensor of link 3 */
+        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y;
+        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z;
+        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x;
+        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x;
         /* (rus-S_ddot) acceleration of the connection point */
         const real rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
         const real rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
         const real rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
-        const real rus_S_ddot_tip_x = axis_x_rus_axes3_x*rus_S_ddot_x +
+        const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*rus_S_ddot_x +
             axis_x_rus_axes3_y*rus_S_ddot_y + axis_x_rus_axes3_z*rus_S_ddot_z;
-        const real rus_S_ddot_tip_y = axis_y_rus_axes3_in_base_x*rus_S_ddot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_ddot_y + axis_y_rus_axes3_in_base_z*rus_S_ddot_z;
-        const real rus_S_ddot_tip_z = axis_z_rus_axes3_in_base_x*rus_S_ddot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_ddot_y + axis_z_rus_axes3_in_base_z*rus_S_ddot_z;
+        const real rus_S_ddot_in_axes3_y = axis_y_rus_axes3_x*rus_S_ddot_x +
+            axis_y_rus_axes3_y*rus_S_ddot_y + axis_y_rus_axes3_z*rus_S_ddot_z;
+        const real rus_S_ddot_in_axes3_z = axis_z_rus_axes3_x*rus_S_ddot_x +
+            axis_z_rus_axes3_y*rus_S_ddot_y + axis_z_rus_axes3_z*rus_S_ddot_z;
+        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
+            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+            rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_x = rus_S_ddot_tip_x - rus_bias_x;
-        const real rus_rel_y = rus_S_ddot_tip_y - rus_bias_y;
-        const real rus_rel_z = rus_S_ddot_tip_z - rus_bias_z;
+        const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
+        const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
+        const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
         /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1 = inv_rus_v_1_t*rus_rel_x;
-        const real rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 -
-            rus_rel_y);
+        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+        /* (rus-qdd_3) acceleration of joint 3 */
+        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 -
+            rus_rel_in_axes3_y);
+        /* (rus-alpha_2) angular acceleration of link 2 */
+        const real rus_alpha_2_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+            rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t;
+        const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3;
+        const real rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3;
+        /* (rus-alpha_3) angular acceleration of link 3 */
+        const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
+        const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
+        /* (rus-B_3) acceleration tensor of link 3 */
+        const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
+        const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
+        const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
+        const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
         /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rus_acc_3_x = rus_S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x -
+        const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
             axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_y = rus_S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z;
-        const real rus_acc_3_z = rus_S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z;
-        /* (rus-alpha_2) angular acceleration of link 2 */
-        const real rus_alpha_2_z = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z) - rus_qdd_1;
-        const real rus_alpha_2_t = rus_alpha_2_z*rus_s_3;
-        const real rus_alpha_2_t_2 = rus_alpha_2_z*rus_c_3;
-        /* (rus-alpha_3) angular acceleration of link 3 */
-        const real rus_alpha_3_x = rus_alpha_2_t - rus_zeta_3_x;
-        const real rus_alpha_3_y = -rus_alpha_2_t_2 - rus_zeta_3_y;
-        /* (rus-B_3) acceleration tensor of link 3 */
-        const real rus_B_3_xy = rus_qdd_3 - rus_W_3_xy;
-        const real rus_B_3_yx = -rus_W_3_xy - rus_qdd_3;
-        const real rus_B_3_zx = rus_zeta_3_y - rus_alpha_3_y;
-        const real rus_B_3_zy = rus_alpha_3_x - rus_zeta_3_x;
+        const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
+            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
+        const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
+            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
         /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_Sigma_3_yy = m->rus_Sigma_3_yy[i];
-        const real rus_Sigma_3_zz = m->rus_Sigma_3_zz[i];
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_mu_3_x = rus_B_3_yx*rus_J_3_xy + rus_B_3_zx*rus_J_3_xz +
-            rus_B_3_zy*rus_Sigma_3_yy + rus_Sigma_3_zz*rus_alpha_2_t - rus_J_3_yz*(rus_W_3_t_2 -
-            rus_W_3_t_3) - rus_acc_3_y*rus_h_3_y - rus_acc_3_z*rus_h_3_z;
-        const real rus_Sigma_3_xx = m->rus_Sigma_3_xx[i];
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_mu_3_y = rus_B_3_xy*rus_J_3_yz + rus_acc_3_x*rus_h_3_y -
-            rus_B_3_zx*rus_Sigma_3_xx - rus_B_3_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t -
-            rus_W_3_t_3) - rus_Sigma_3_zz*rus_alpha_2_t_2 - rus_acc_3_z*rus_h_3_x;
-        const real rus_mu_3_z = rus_B_3_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_t +
-            rus_J_3_yz*rus_alpha_2_t_2 + rus_acc_3_x*rus_h_3_z + rus_acc_3_y*rus_h_3_x -
-            rus_B_3_xy*rus_Sigma_3_yy - rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2);
-        const real rus_mu_3_r0_y = rus_mu_3_x*rus_s_3 - rus_c_3*rus_mu_3_y;
+        const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+        const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+        const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
+            rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
+            + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
+        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
+            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
+        const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
+            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
+            - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
+            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
+        const real rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y +
+            rus_mu_3_in_axes3_x*rus_s_3;
         /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_mu_1_z = rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) -
-            rus_J_1_zz*rus_qdd_1 - rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+        const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
+            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
         /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rus_N_1_z = rus_mu_1_z + rus_mu_3_r0_y;
+        const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rus_G_t = inv_rus_r_1_t*rus_mu_3_r0_y;
-        const real rus_G_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_z;
+        const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rus_c_x = inv_rus_v_1_t*(rus_N_1_z + rus_G_t_2*rus_v_1_t_2 - rus_G_t*rus_v_1_z)
-            + rus_B_3_xy*rus_h_3_z + rus_alpha_2_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
-            rus_W_3_t_3);
-        const real rus_c_y = rus_alpha_2_t*rus_h_3_y - rus_G_t_2 - rus_B_3_yx*rus_h_3_x -
-            rus_h_3_z*(rus_W_3_t + rus_W_3_t_3);
-        const real rus_c_z = rus_B_3_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_t
-            - rus_B_3_zx*rus_h_3_x;
-        const real rus_c_in_base_x = axis_x_rus_axes3_x*rus_c_x +
-            axis_y_rus_axes3_in_base_x*rus_c_y + axis_z_rus_axes3_in_base_x*rus_c_z;
-        const real rus_c_in_base_y = axis_x_rus_axes3_y*rus_c_x +
-            axis_y_rus_axes3_in_base_y*rus_c_y + axis_z_rus_axes3_in_base_y*rus_c_z;
-        const real rus_c_in_base_z = axis_x_rus_axes3_z*rus_c_x +
-            axis_y_rus_axes3_in_base_z*rus_c_y + axis_z_rus_axes3_in_base_z*rus_c_z;
+        const real rus_c_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_in_axes1_z +
+            rus_G_in_axes3_y*rus_v_1_t_3 - rus_G_in_axes3_z*rus_v_1_in_axes3_z) +
+            rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
+            rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
+            - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
+            rus_mu_3_t_3);
+        const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
+            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
+        const real rus_c_x = axis_x_rus_axes3_x*rus_c_in_axes3_x +
+            axis_y_rus_axes3_x*rus_c_in_axes3_y + axis_z_rus_axes3_x*rus_c_in_axes3_z;
+        const real rus_c_y = axis_x_rus_axes3_y*rus_c_in_axes3_x +
+            axis_y_rus_axes3_y*rus_c_in_axes3_y + axis_z_rus_axes3_y*rus_c_in_axes3_z;
+        const real rus_c_z = axis_x_rus_axes3_z*rus_c_in_axes3_x +
+            axis_y_rus_axes3_z*rus_c_in_axes3_y + axis_z_rus_axes3_z*rus_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rus_R_a_t = rus_c_in_base_z*rus_q_in_base_y - rus_c_in_base_y*rus_q_in_base_z;
-        const real rus_R_a_t_2 = rus_c_in_base_x*rus_q_in_base_z -
-            rus_c_in_base_z*rus_q_in_base_x;
-        const real rus_R_a_t_3 = rus_c_in_base_y*rus_q_in_base_x -
-            rus_c_in_base_x*rus_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rus_c_in_base_x : rus_c_in_base_x;  /* total_rus_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rus_c_in_base_y : rus_c_in_base_y;  /* total_rus_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rus_c_in_base_z : rus_c_in_base_z;  /* total_rus_z */
-        terms[3*count + k] = add ? terms[3*count + k] + rus_R_a_t : rus_R_a_t;  /* total_rus_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + rus_R_a_t_2 : rus_R_a_t_2;  /* total_rus_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + rus_R_a_t_3 : rus_R_a_t_3;  /* total_rus_z_2 */
-        o[0*count + k] = -rus_w_1_t_3;
-        o[1*count + k] = -rus_w_1_t_4;
-        o[2*count + k] = -rus_w_1_t_5;
+        const real rus_R_a_t = rus_c_y*rus_q_z - rus_c_z*rus_q_y;
+        const real rus_R_a_t_2 = rus_c_z*rus_q_x - rus_c_x*rus_q_z;
+        const real rus_R_a_t_3 = rus_c_x*rus_q_y - rus_c_y*rus_q_x;
+        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
+        const real rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9;
+        const real rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7;
+        const real rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_c_x : rus_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rus_c_y : rus_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + rus_c_z : rus_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + rus_R_a_t : rus_R_a_t;  /* R_a_rus_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rus_R_a_t_2 : rus_R_a_t_2;  /* R_a_rus_y */
+        terms[5*count + k] = add ? terms[5*count + k] + rus_R_a_t_3 : rus_R_a_t_3;  /* R_a_rus_z */
+        /* (rus-w_1) reciprocal vector 1 */
+        o[0*count + k] = -rus_w_1_t_7;
+        o[1*count + k] = -rus_w_1_t_8;
+        o[2*count + k] = -rus_w_1_t_9;
+        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rus_H_a_1_x;
         o[4*count + k] = rus_H_a_1_y;
         o[5*count + k] = rus_H_a_1_z;
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
         o[6*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -3881,28 +3975,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_rus_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_rus_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_rus_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_rus_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_rus_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_rus_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_rus_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_rus_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_rus_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_rus_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_rus_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_rus_z_2;
+        const real R_a_rus_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_rus_x + mu_p_x;
+        const real R_a_rus_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_rus_y + mu_p_y;
+        const real R_a_rus_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_rus_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -4025,24 +4121,24 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg,
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -4052,45 +4148,47 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg,
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+        /* (rus-q_1) displacement of joint 1 */
+        const real inv_rus_rho2_1 = 1/rus_rho2_1;
+        const real rus_q_1 = angle(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
+            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1));
         /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
         const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
             rus_S_z*rus_base_frame_zz;
         /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
             rus_joint2_offset_x;
         /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
         /* (rus-root_2) root, with the sign of the branch */
         const real rus_branch_2 = m->rus_branch_2[i];
         const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        /* (rus-q_1) displacement of joint 1 */
-        const real rus_q_1 = angle(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
-            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1));
         /* (rus-q_2) displacement of joint 2 */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
         const real rus_q_2 = angle(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t,
-            inv_rus_rho2_2*rus_root_2*rus_x_2_x);
+            inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x);
         /* (rus-q_3) displacement of joint 3 */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_q_3 = angle(-inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2,
-            inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2);
+        const real rus_q_3 =
+            angle(-inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z,
+            inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2);
+        /* (rus-q_1) displacement of joint 1 */
         o[0*count + k] = rus_q_1;
+        /* (rus-q_2) displacement of joint 2 */
         o[1*count + k] = rus_q_2;
+        /* (rus-q_3) displacement of joint 3 */
         o[2*count + k] = rus_q_3;
         o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t);
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
         o[3*count + k] = UNLESS(rus_disc_1 >= 0);
     }
 }
@@ -4214,48 +4312,48 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t leg, size_t
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
+        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -4265,104 +4363,105 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t leg, size_t
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
         /* (rus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real rus_S_dot_x = t_dot_x + omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y;
+        const real rus_S_dot_x = t_dot_x + omega_y*rus_q_z - omega_z*rus_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real rus_S_dot_y = t_dot_y + omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z;
+        const real rus_S_dot_y = t_dot_y + omega_z*rus_q_x - omega_x*rus_q_z;
         const real t_dot_z = s[14*w + j];
-        const real rus_S_dot_z = t_dot_z + omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x;
+        const real rus_S_dot_z = t_dot_z + omega_x*rus_q_y - omega_y*rus_q_x;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = -rus_c_3*rus_r_1_in_axes3_z;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
+            rus_base_frame_xy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
+            rus_base_frame_yy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
+            rus_base_frame_zy*rus_qd_1_t_2;
+        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
+        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
+            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
+            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
+            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real rus_qd_1 = -(rus_S_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
+            rus_S_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
+            rus_S_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t;
+        /* (rus-qd_2) rate of joint 2 */
+        const real rus_qd_2_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_qd_2_t_2 = axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y
+            + axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*(rus_s_3*(rus_c_3*rus_r_1_in_axes1_z +
+            rus_qd_2_t*rus_s_3) - rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_qd_2_t));
+        const real rus_qd_2 = rus_qd_2_t_2/rus_r_1_t;
         /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_1 = (rus_S_dot_x*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z
-            - axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y) +
-            rus_S_dot_y*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z) +
-            rus_S_dot_z*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x))/rus_v_1_t;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 =
-            inv_rus_platform_joint_offset_x*(axis_y_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_dot_y + axis_y_rus_axes3_in_base_z*rus_S_dot_z -
-            rus_qd_1*rus_r_1_r0_x*rus_s_3);
-        const real rus_qd_3_t = axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*(rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3));
-        const real rus_qd_2 = rus_qd_3_t/rus_r_1_t;
-        o[0*count + k] = -rus_qd_1;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*rus_S_dot_x +
+            axis_y_rus_axes3_y*rus_S_dot_y + axis_y_rus_axes3_z*rus_S_dot_z +
+            rus_qd_1*rus_r_1_in_axes3_z*rus_s_3);
+        /* (rus-qd_1) rate of joint 1 */
+        o[0*count + k] = rus_qd_1;
+        /* (rus-qd_2) rate of joint 2 */
         o[1*count + k] = rus_qd_2;
+        /* (rus-qd_3) rate of joint 3 */
         o[2*count + k] = rus_qd_3;
         o[5*count + k] = rus_qd_1 + (rus_qd_2 + rus_qd_3);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
             TOLERANCE*rus_size);
         o[3*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -4508,48 +4607,48 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
+        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -4559,159 +4658,167 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
         /* (rus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y;
+        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
         const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x;
+        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
+        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
         const real t_dot_x = s[12*w + j];
         const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x +
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3;
+        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
+        /* (rus-w_1) reciprocal vector 1 */
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+        /* (rus-w_2) reciprocal vector 2 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
+            rus_base_frame_xy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
+            rus_base_frame_yy*rus_qd_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
+            rus_base_frame_zy*rus_qd_1_t_2;
+        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
+        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
+            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
+            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
+            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
             axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_dot_y + axis_y_rus_axes3_in_base_z*rus_S_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_omega_2_t*rus_platform_joint_offset_x*rus_qd_3 -
-            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
+        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
+        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        /* (rus-omega_2) angular velocity of link 2 */
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
+        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
         /* (rus-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y;
+        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z;
+        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x;
+        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x;
         /* (rus-S_ddot) acceleration of the connection point */
         const real rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
         const real rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
         const real rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
+        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
+            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t +
+            rus_omega_2_in_axes3_x*rus_platform_joint_offset_x*rus_qd_3 -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_x = axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
-            axis_x_rus_axes3_z*rus_S_ddot_z - rus_bias_x;
-        const real rus_rel_y = axis_y_rus_axes3_in_base_x*rus_S_ddot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_ddot_y + axis_y_rus_axes3_in_base_z*rus_S_ddot_z -
-            rus_bias_y;
-        const real rus_rel_z = axis_z_rus_axes3_in_base_x*rus_S_ddot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_ddot_y + axis_z_rus_axes3_in_base_z*rus_S_ddot_z -
-            rus_bias_z;
+        const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*rus_S_ddot_x +
+            axis_x_rus_axes3_y*rus_S_ddot_y + axis_x_rus_axes3_z*rus_S_ddot_z -
+            rus_bias_in_axes3_x;
+        const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*rus_S_ddot_x +
+            axis_y_rus_axes3_y*rus_S_ddot_y + axis_y_rus_axes3_z*rus_S_ddot_z -
+            rus_bias_in_axes3_y;
+        const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*rus_S_ddot_x +
+            axis_z_rus_axes3_y*rus_S_ddot_y + axis_z_rus_axes3_z*rus_S_ddot_z -
+            rus_bias_in_axes3_z;
         /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1 = inv_rus_v_1_t*rus_rel_x;
-        const real rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 -
-            rus_rel_y);
-        const real rus_qdd_2 = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z);
-        o[0*count + k] = -rus_qdd_1;
+        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+        /* (rus-qdd_2) acceleration of joint 2 */
+        const real rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+            rus_qdd_1_t*rus_v_1_in_axes3_z);
+        /* (rus-qdd_3) acceleration of joint 3 */
+        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 -
+            rus_rel_in_axes3_y);
+        /* (rus-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = -rus_qdd_1_t;
+        /* (rus-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rus_qdd_2;
-        o[2*count + k] = -rus_qdd_3;
-        o[5*count + k] = rus_qdd_1 + (rus_qdd_2 + rus_qdd_3);
+        /* (rus-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = -rus_qdd_3_t;
+        o[5*count + k] = rus_qdd_1_t + (rus_qdd_2 + rus_qdd_3_t);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
         o[3*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -4858,48 +4965,48 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
+        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -4909,250 +5016,264 @@ INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t_3 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2;
-        const real rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*rus_r_1_r0_x;
-        const real rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3;
-        const real rus_v_1_z = rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) +
-            rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real inv_rus_r_1_t = 1/rus_r_1_t;
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
         /* (rus-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y;
+        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
         const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x;
+        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
+        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
         const real t_dot_x = s[12*w + j];
         const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_1 = inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x +
-            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
-        const real rus_qd_3_t = axis_y_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_dot_y + axis_y_rus_axes3_in_base_z*rus_S_dot_z -
-            rus_qd_1*rus_v_1_t_2;
-        const real inv_rus_platform_joint_offset_x = m->inv_rus_platform_joint_offset_x[i];
-        const real rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_z = inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1;
-        const real rus_omega_2_t = rus_omega_2_z*rus_s_3;
-        const real rus_omega_2_t_2 = rus_c_3*rus_omega_2_z;
-        /* (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3;
-        const real rus_zeta_3_y = rus_omega_2_t*rus_qd_3;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_t = rus_omega_2_t*rus_omega_2_t;
-        const real rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2;
-        const real rus_W_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_t = rus_qd_1*rus_s_3;
-        const real rus_omega_1_t_2 = rus_c_3*rus_qd_1;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t_2 = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 +
-            rus_bias_t_2*rus_omega_1_t*rus_s_3;
-        const real rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x;
-        const real rus_bias_x = -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 -
-            rus_qd_3*rus_qd_3_t;
-        const real rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t;
-        const real rus_bias_z = rus_omega_2_t*rus_qd_3_t +
-            rus_platform_joint_offset_x*rus_zeta_3_y - rus_bias_t*rus_omega_1_t*rus_omega_1_t -
-            rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
+        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3;
+        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t;
-        const real rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t;
-        const real rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t;
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
+        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
+        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
+        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
+        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
+        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
+        /* (rus-w_2) reciprocal vector 2 */
+        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        /* (rus-qd_1) rate of joint 1 */
+        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
+            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
+        /* (rus-qd_3) rate of joint 3 */
+        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
+        /* (rus-omega_1) angular velocity of link 1 */
+        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
+        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        /* (rus-omega_2) angular velocity of link 2 */
+        const real rus_omega_2_in_axes2_z = rus_qd_1 +
+            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
+        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
+        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        /* (rus-W_3) centripetal tensor of link 3 */
+        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y;
+        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z;
+        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x;
+        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x;
         /* (rus-S_ddot) acceleration of the connection point */
         const real rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
         const real rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
         const real rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
-        const real rus_S_ddot_tip_x = axis_x_rus_axes3_x*rus_S_ddot_x +
+        const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*rus_S_ddot_x +
             axis_x_rus_axes3_y*rus_S_ddot_y + axis_x_rus_axes3_z*rus_S_ddot_z;
-        const real rus_S_ddot_tip_y = axis_y_rus_axes3_in_base_x*rus_S_ddot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_ddot_y + axis_y_rus_axes3_in_base_z*rus_S_ddot_z;
-        const real rus_S_ddot_tip_z = axis_z_rus_axes3_in_base_x*rus_S_ddot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_ddot_y + axis_z_rus_axes3_in_base_z*rus_S_ddot_z;
+        const real rus_S_ddot_in_axes3_y = axis_y_rus_axes3_x*rus_S_ddot_x +
+            axis_y_rus_axes3_y*rus_S_ddot_y + axis_y_rus_axes3_z*rus_S_ddot_z;
+        const real rus_S_ddot_in_axes3_z = axis_z_rus_axes3_x*rus_S_ddot_x +
+            axis_z_rus_axes3_y*rus_S_ddot_y + axis_z_rus_axes3_z*rus_S_ddot_z;
+        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
+        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
+        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
+            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
+        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
+            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
+            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+            rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_x = rus_S_ddot_tip_x - rus_bias_x;
-        const real rus_rel_y = rus_S_ddot_tip_y - rus_bias_y;
-        const real rus_rel_z = rus_S_ddot_tip_z - rus_bias_z;
+        const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
+        const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
+        const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
         /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1 = inv_rus_v_1_t*rus_rel_x;
-        const real rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 -
-            rus_rel_y);
+        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+        /* (rus-qdd_3) acceleration of joint 3 */
+        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 -
+            rus_rel_in_axes3_y);
+        /* (rus-alpha_2) angular acceleration of link 2 */
+        const real rus_alpha_2_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+            rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t;
+        const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3;
+        const real rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3;
+        /* (rus-alpha_3) angular acceleration of link 3 */
+        const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
+        const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
+        /* (rus-B_3) acceleration tensor of link 3 */
+        const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
+        const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
+        const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
+        const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
         /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rus_acc_3_x = rus_S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x -
+        const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
             axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_y = rus_S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z;
-        const real rus_acc_3_z = rus_S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z;
-        /* (rus-alpha_2) angular acceleration of link 2 */
-        const real rus_alpha_2_z = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z) - rus_qdd_1;
-        const real rus_alpha_2_t = rus_alpha_2_z*rus_s_3;
-        const real rus_alpha_2_t_2 = rus_alpha_2_z*rus_c_3;
-        /* (rus-alpha_3) angular acceleration of link 3 */
-        const real rus_alpha_3_x = rus_alpha_2_t - rus_zeta_3_x;
-        const real rus_alpha_3_y = -rus_alpha_2_t_2 - rus_zeta_3_y;
-        /* (rus-B_3) acceleration tensor of link 3 */
-        const real rus_B_3_xy = rus_qdd_3 - rus_W_3_xy;
-        const real rus_B_3_yx = -rus_W_3_xy - rus_qdd_3;
-        const real rus_B_3_zx = rus_zeta_3_y - rus_alpha_3_y;
-        const real rus_B_3_zy = rus_alpha_3_x - rus_zeta_3_x;
+        const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
+            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
+        const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
+            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
         /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rus_J_3_xy = m->rus_J_3_xy[i];
-        const real rus_J_3_xz = m->rus_J_3_xz[i];
-        const real rus_J_3_yz = m->rus_J_3_yz[i];
-        const real rus_Sigma_3_yy = m->rus_Sigma_3_yy[i];
-        const real rus_Sigma_3_zz = m->rus_Sigma_3_zz[i];
-        const real rus_h_3_y = m->rus_h_3_y[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_mu_3_x = rus_B_3_yx*rus_J_3_xy + rus_B_3_zx*rus_J_3_xz +
-            rus_B_3_zy*rus_Sigma_3_yy + rus_Sigma_3_zz*rus_alpha_2_t - rus_J_3_yz*(rus_W_3_t_2 -
-            rus_W_3_t_3) - rus_acc_3_y*rus_h_3_y - rus_acc_3_z*rus_h_3_z;
-        const real rus_Sigma_3_xx = m->rus_Sigma_3_xx[i];
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_mu_3_y = rus_B_3_xy*rus_J_3_yz + rus_acc_3_x*rus_h_3_y -
-            rus_B_3_zx*rus_Sigma_3_xx - rus_B_3_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t -
-            rus_W_3_t_3) - rus_Sigma_3_zz*rus_alpha_2_t_2 - rus_acc_3_z*rus_h_3_x;
-        const real rus_mu_3_z = rus_B_3_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_t +
-            rus_J_3_yz*rus_alpha_2_t_2 + rus_acc_3_x*rus_h_3_z + rus_acc_3_y*rus_h_3_x -
-            rus_B_3_xy*rus_Sigma_3_yy - rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2);
-        const real rus_mu_3_r0_y = rus_mu_3_x*rus_s_3 - rus_c_3*rus_mu_3_y;
+        const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+        const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+        const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
+            rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
+            + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
+        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
+            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
+        const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
+            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
+            - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
+            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
+        const real rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y +
+            rus_mu_3_in_axes3_x*rus_s_3;
         /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_J_1_zz = m->rus_J_1_zz[i];
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_mu_1_z = rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) -
-            rus_J_1_zz*rus_qdd_1 - rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1);
+        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+        const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
+            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
         /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rus_N_1_z = rus_mu_1_z + rus_mu_3_r0_y;
+        const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rus_G_t = inv_rus_r_1_t*rus_mu_3_r0_y;
-        const real rus_G_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_z;
+        const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rus_c_x = inv_rus_v_1_t*(rus_N_1_z + rus_G_t_2*rus_v_1_t_2 - rus_G_t*rus_v_1_z)
-            + rus_B_3_xy*rus_h_3_z + rus_alpha_2_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
-            rus_W_3_t_3);
-        const real rus_c_y = rus_alpha_2_t*rus_h_3_y - rus_G_t_2 - rus_B_3_yx*rus_h_3_x -
-            rus_h_3_z*(rus_W_3_t + rus_W_3_t_3);
-        const real rus_c_z = rus_B_3_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_t
-            - rus_B_3_zx*rus_h_3_x;
+        const real rus_c_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_in_axes1_z +
+            rus_G_in_axes3_y*rus_v_1_t_3 - rus_G_in_axes3_z*rus_v_1_in_axes3_z) +
+            rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
+            rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
+        const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
+            - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
+            rus_mu_3_t_3);
+        const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
+            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
         /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rus_link3_mass = m->rus_link3_mass[i];
-        const real rus_c_true_x = rus_c_x - rus_acc_3_x*rus_link3_mass;
-        const real rus_c_true_y = rus_c_y - rus_acc_3_y*rus_link3_mass;
-        const real rus_c_true_z = rus_c_z - rus_acc_3_z*rus_link3_mass;
-        const real rus_c_true_in_base_x = axis_x_rus_axes3_x*rus_c_true_x +
-            axis_y_rus_axes3_in_base_x*rus_c_true_y + axis_z_rus_axes3_in_base_x*rus_c_true_z;
-        const real rus_c_true_in_base_y = axis_x_rus_axes3_y*rus_c_true_x +
-            axis_y_rus_axes3_in_base_y*rus_c_true_y + axis_z_rus_axes3_in_base_y*rus_c_true_z;
-        const real rus_c_true_in_base_z = axis_x_rus_axes3_z*rus_c_true_x +
-            axis_y_rus_axes3_in_base_z*rus_c_true_y + axis_z_rus_axes3_in_base_z*rus_c_true_z;
-        o[0*count + k] = rus_c_true_in_base_x;
-        o[1*count + k] = rus_c_true_in_base_y;
-        o[2*count + k] = rus_c_true_in_base_z;
-        o[3*count + k] = -rus_w_1_t_3;
-        o[4*count + k] = -rus_w_1_t_4;
-        o[5*count + k] = -rus_w_1_t_5;
+        const real rus_c_true_in_axes3_x = rus_c_in_axes3_x - rus_acc_3_in_axes3_x*rus_link3_mass;
+        const real rus_c_true_in_axes3_y = rus_c_in_axes3_y - rus_acc_3_in_axes3_y*rus_link3_mass;
+        const real rus_c_true_in_axes3_z = rus_c_in_axes3_z - rus_acc_3_in_axes3_z*rus_link3_mass;
+        const real rus_c_true_x = axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
+            axis_y_rus_axes3_x*rus_c_true_in_axes3_y + axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
+        const real rus_c_true_y = axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
+            axis_y_rus_axes3_y*rus_c_true_in_axes3_y + axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
+        const real rus_c_true_z = axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
+            axis_y_rus_axes3_z*rus_c_true_in_axes3_y + axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
+        /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rus_c_true_x;
+        o[1*count + k] = rus_c_true_y;
+        o[2*count + k] = rus_c_true_z;
+        /* (rus-w_1) reciprocal vector 1 */
+        o[3*count + k] = -rus_w_1_t_7;
+        o[4*count + k] = -rus_w_1_t_8;
+        o[5*count + k] = -rus_w_1_t_9;
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
             TOLERANCE*rus_size);
         o[6*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -5226,13 +5347,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -5284,24 +5407,24 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -5311,66 +5434,67 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rus_h_3_x = m->rus_h_3_x[i];
-        const real rus_h_3_z = m->rus_h_3_z[i];
-        const real rus_d_Gamma_2_t = rus_h_3_z*rus_s_3 - rus_c_3*rus_h_3_x;
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
+        /* (rus-rho2_2) squared amplitude */
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
         /* (potential) potential energy */
-        const real rus_b_r0_x = m->rus_b_r0_x[i];
-        const real rus_b_r0_y = m->rus_b_r0_y[i];
-        const real rus_g_r0_x = m->rus_g_r0_x[i];
-        const real rus_g_r0_y = m->rus_g_r0_y[i];
-        const real rus_g_r0_z = m->rus_g_r0_z[i];
-        const real rus_h_1_x = m->rus_h_1_x[i];
-        const real rus_h_1_y = m->rus_h_1_y[i];
-        const real rus_h_1_z = m->rus_h_1_z[i];
-        const real rus_h_3_y = m->rus_h_3_y[i];
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_potential_t_4 = rus_c_3*rus_h_3_in_spec3_x + rus_h_3_in_spec3_z*rus_s_3;
+        const real rus_g_in_axes1_z = m->rus_g_in_axes1_z[i];
+        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+        const real rus_h_1_in_spec1_z = m->rus_h_1_in_spec1_z[i];
+        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
         const real rus_link1_mass = m->rus_link1_mass[i];
+        const real rus_mu_1_t = m->rus_mu_1_t[i];
+        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
         const real rus_potential_t = m->rus_potential_t[i];
-        const real rus_potential_t_2 = rus_g_r0_z*(rus_h_1_z + rus_potential_t + rus_c_3*rus_h_3_z
-            + rus_h_3_x*rus_s_3) + (rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1)*(rus_h_1_x +
-            rus_c_2*rus_h_3_y + rus_link1_mass*(rus_b_r0_x*rus_c_1 + rus_b_r0_y*rus_s_1) -
-            rus_d_Gamma_2_t*rus_s_2) + (rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)*(rus_h_1_y +
-            rus_c_2*rus_d_Gamma_2_t + rus_h_3_y*rus_s_2 + rus_link1_mass*(rus_b_r0_y*rus_c_1 -
-            rus_b_r0_x*rus_s_1));
-        terms[0*count + k] = add ? terms[0*count + k] + rus_potential_t_2 : rus_potential_t_2;  /* total_rus */
+        const real rus_potential_t_2 = m->rus_potential_t_2[i];
+        const real rus_potential_t_3 = m->rus_potential_t_3[i];
+        const real rus_potential_t_5 = rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 +
+            rus_h_3_in_spec3_x*rus_s_3 - rus_c_3*rus_h_3_in_spec3_z) + (rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_c_2*rus_h_3_in_spec3_y +
+            rus_link1_mass*(rus_c_1*rus_potential_t + rus_potential_t_2*rus_s_1) -
+            rus_potential_t_4*rus_s_2) + (rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_potential_t_4 +
+            rus_h_3_in_spec3_y*rus_s_2 + rus_link1_mass*(rus_c_1*rus_potential_t_2 -
+            rus_potential_t*rus_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_potential_t_5 : rus_potential_t_5;  /* potential_t_2 */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t);
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
         o[0*count + k] = UNLESS(rus_disc_1 >= 0);
     }
 }
@@ -5388,8 +5512,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_rus = sums[0*w + k];
-        const real potential_ = -potential_t - total_rus;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5459,6 +5584,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -5479,48 +5605,48 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_in_base_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
             R_xz*rus_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rus_q_in_base_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
             R_yz*rus_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rus_q_in_base_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
             R_zz*rus_platform_point_z;
         const real rus_base_point_x = m->rus_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x;
+        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
         const real rus_base_point_y = m->rus_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y;
+        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
         const real rus_base_point_z = m->rus_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z;
+        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
         /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
         const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_Kd_1_t_2 = m->rus_Kd_1_t_2[i];
-        const real rus_Kd_1_t_4 = m->rus_Kd_1_t_4[i];
-        const real rus_Kd_1 = R(0.5)*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4;
+        const real rus_J_3_t = m->rus_J_3_t[i];
+        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
         /* (rus-px_1) component along the reference direction */
         const real rus_base_frame_xx = m->rus_base_frame_xx[i];
         const real rus_base_frame_yx = m->rus_base_frame_yx[i];
         const real rus_base_frame_zx = m->rus_base_frame_zx[i];
         const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
             rus_S_z*rus_base_frame_zx;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-py_1) component across the reference direction */
         const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
             rus_S_z*rus_base_frame_zy;
+        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
         /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
         const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
         /* (rus-rho2_1) squared amplitude */
@@ -5530,119 +5656,116 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         /* (rus-root_1) root, with the sign of the branch */
         const real rus_branch_1 = m->rus_branch_1[i];
         const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_Kd_1_t_6 = m->inv_rus_Kd_1_t_6[i];
-        const real rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_t_2 = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_Kd_1_t_8 = m->inv_rus_Kd_1_t_8[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_3*(rus_c_2*rus_r_1_x - rus_c_2*rus_r_1_t*rus_s_2);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rus_rho2_1 = 1/rus_rho2_1;
         const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
         const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
-        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
-        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
-        const real rus_w_1_t = rus_s_2*rus_s_3;
-        const real rus_w_1_t_2 = rus_c_2*rus_s_3;
-        const real axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2;
-        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_xy - rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_yy - rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
-            axis_y_rus_axes3_r3_y*rus_base_frame_zy - rus_base_frame_zz*rus_c_3;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        const real rus_w_1_t_3 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y);
-        const real rus_w_1_t_4 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z);
-        const real rus_w_1_t_5 =
-            inv_rus_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x);
-        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        const real rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5;
-        const real rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3;
-        const real rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rus_spread_t = b_c_x - rus_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rus_spread_t_2 = b_c_y - rus_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real rus_spread_t_3 = b_c_z - rus_platform_point_z;
-        const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
-            rus_spread_t_3*rus_spread_t_3;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_pivot_size = magnitude(rus_rho2_1);
+        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real inv_rus_size_t = m->inv_rus_size_t[i];
+        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
+            rus_S_z*rus_base_frame_zz;
+        /* (rus-x_2) from the origin of joint 2 to the connection point */
+        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+            rus_joint2_offset_x;
         /* (rus-rho2_2) squared amplitude */
-        const real rus_pivot_size_2 = magnitude(rus_rho2_2);
+        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+        /* (rus-root_2) root, with the sign of the branch */
+        const real rus_branch_2 = m->rus_branch_2[i];
+        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rus_rho2_2 = 1/rus_rho2_2;
+        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        /* (rus-r_1) from joint 1 to the connection point, along the links */
+        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
+        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
+        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+        const real rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2);
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_pivot_size_3 = magnitude(rus_r_1_t);
-        const real rus_pivot_size_4 = magnitude(rus_v_1_t);
+        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
+        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+            rus_base_frame_xy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+            rus_base_frame_yy*rus_w_1_t_2;
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+            rus_base_frame_zy*rus_w_1_t_2;
+        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
+        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
+        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real inv_rus_v_1_t = 1/rus_v_1_t;
+        const real rus_w_1_t_7 = inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y);
+        const real rus_w_1_t_8 = inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z);
+        const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x);
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_rus_rho2_1_t_4 = m->inv_rus_rho2_1_t_4[i];
+        const real rus_pivot_size = magnitude(rus_rho2_1);
+        const real rus_pivot_size_2 = magnitude(rus_rho2_2);
+        const real rus_pivot_size_3 = magnitude(rus_r_1_t);
+        const real rus_pivot_size_4 = magnitude(rus_v_1_t);
+        const real inv_rus_rho2_1_t = m->inv_rus_rho2_1_t[i];
         const real inv_rus_size = m->inv_rus_size[i];
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_least_pivots =
-            lesser(lesser(lesser(root(inv_rus_rho2_1_t_4*rus_pivot_size),
+        const real inv_rus_size_t_3 = m->inv_rus_size_t_3[i];
+        const real rus_least_pivots = lesser(lesser(lesser(root(inv_rus_rho2_1_t*rus_pivot_size),
             inv_rus_size*rus_pivot_size_3), inv_rus_size*rus_pivot_size_4),
-            root(inv_rus_size_t*rus_pivot_size_2));
-        terms[0*count + k] = add ? terms[0*count + k] + rus_spread_t_4 : rus_spread_t_4;  /* total_rus */
-        o[0*count + k] = -rus_w_1_t_3;
-        o[1*count + k] = -rus_w_1_t_4;
-        o[2*count + k] = -rus_w_1_t_5;
+            root(inv_rus_size_t_3*rus_pivot_size_2));
+        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
+        const real rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9;
+        const real rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7;
+        const real rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rus_spread_t = b_c_in_platform_x - rus_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rus_spread_t_2 = b_c_in_platform_y - rus_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real rus_spread_t_3 = b_c_in_platform_z - rus_platform_point_z;
+        const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
+            rus_spread_t_3*rus_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rus_spread_t_4 : rus_spread_t_4;  /* spread_rus */
+        /* (rus-w_1) reciprocal vector 1 */
+        o[0*count + k] = -rus_w_1_t_7;
+        o[1*count + k] = -rus_w_1_t_8;
+        o[2*count + k] = -rus_w_1_t_9;
+        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rus_H_a_1_x;
         o[4*count + k] = rus_H_a_1_y;
         o[5*count + k] = rus_H_a_1_z;
+        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[6*count + k] = rus_least_pivots;
         o[7*count + k] = rus_disc_1;
-        o[10*count + k] = ((rus_w_1_t_3 + rus_w_1_t_4) + (rus_w_1_t_5 + rus_H_a_1_x)) +
+        o[10*count + k] = ((rus_w_1_t_7 + rus_w_1_t_8) + (rus_w_1_t_9 + rus_H_a_1_x)) +
             ((rus_H_a_1_y + rus_H_a_1_z) + (rus_least_pivots + rus_disc_1));
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
-        const real rus_size_t = m->rus_size_t[i];
+        const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
         o[9*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(-rus_v_1_t) >
+            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
             TOLERANCE*rus_size);
         o[8*count + k] = UNLESS(rus_disc_1 >= 0);
     }
@@ -5671,9 +5794,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_rus = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_rus = sums[0*w + k];
-        const real spread_ = spread_t*root(total_rus);
+        const real spread_ = root(spread_rus)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -376,7 +376,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -565,56 +565,78 @@ def _prepare(p):
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
     # (spread) rms distance of the platform points from their centroid
     spread_t = 0.16666666666666666*sqrt(6.0)
-    # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    rus_Kd_1_t = rus_joint2_offset_x*rus_joint2_offset_x
-    rus_Kd_1_t_2 = 0.5*rus_Kd_1_t
-    rus_Kd_1_t_3 = rus_platform_joint_offset_x*rus_platform_joint_offset_x
-    rus_Kd_1_t_4 = 0.5*rus_Kd_1_t_3
     # (rus-size) length of the leg's lever arms, the measure of what is near singular
-    rus_size_t = 5.17091866281e-07 + rus_Kd_1_t + rus_Kd_1_t_3
-    rus_size = sqrt(rus_size_t)
-    # (rus-rho2_1) squared amplitude
-    rus_rho2_1_t = rus_size*rus_size*rus_size_t
-    # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-    inv_rus_Kd_1_t_6 = 1.0/rus_Kd_1_t
-    # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-    inv_rus_Kd_1_t_8 = 1.0/rus_Kd_1_t_3
-    # (rus-rho_tip_3) connection point to the centre of mass of link 3
-    rus_rho_tip_3_x = rus_link3_centre_of_mass_x - rus_platform_joint_offset_x
-    # (rus-h_3) first moment of link 3 about the connection point
-    rus_h_3_x = rus_link3_mass*rus_rho_tip_3_x
-    rus_h_3_y = rus_link3_centre_of_mass_y*rus_link3_mass
-    rus_h_3_z = rus_link3_centre_of_mass_z*rus_link3_mass
-    # (rus-w_3) reciprocal vector 3
-    inv_rus_platform_joint_offset_x = 1.0/rus_platform_joint_offset_x
-    # (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    rus_d_phi_3_t = inv_rus_platform_joint_offset_x*rus_h_3_z
-    # (rus-J_3) inertia tensor of link 3 about the connection point
-    rus_J_3_t = rus_rho_tip_3_x*rus_rho_tip_3_x
-    rus_J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y
-    rus_J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z
-    rus_J_3_t_4 = rus_J_3_t + rus_J_3_t_2 + rus_J_3_t_3
-    rus_J_3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t - rus_J_3_t_4)
-    rus_J_3_xy = rus_link3_inertia_xy - rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_x
-    rus_J_3_xz = rus_link3_inertia_xz - rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_x
-    rus_J_3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_2 - rus_J_3_t_4)
-    rus_J_3_yz = (
-    rus_link3_inertia_yz - rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass
-    )
-    rus_J_3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_3 - rus_J_3_t_4)
-    # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    rus_d_Gamma_3_t = inv_rus_platform_joint_offset_x*rus_J_3_yy
-    rus_d_Gamma_3_y = rus_d_Gamma_3_t + rus_h_3_x
+    rus_size_t = rus_joint2_offset_x*rus_joint2_offset_x
+    rus_size_t_2 = rus_platform_joint_offset_x*rus_platform_joint_offset_x
+    rus_size_t_3 = 5.17091866281e-07 + rus_size_t + rus_size_t_2
+    rus_size = sqrt(rus_size_t_3)
+    # (rus-h_1) first moment of link 1 about the origin of link 1
+    rus_h_1_in_spec1_x = rus_link1_centre_of_mass_x*rus_link1_mass
+    rus_h_1_in_spec1_y = rus_link1_centre_of_mass_y*rus_link1_mass
+    rus_h_1_in_spec1_z = rus_link1_centre_of_mass_z*rus_link1_mass
     # (rus-J_1) inertia tensor of link 1 about the origin of link 1
     rus_J_1_t = rus_link1_centre_of_mass_z*rus_link1_centre_of_mass_z
     rus_J_1_t_2 = (
     rus_J_1_t + rus_link1_centre_of_mass_x*rus_link1_centre_of_mass_x +
         rus_link1_centre_of_mass_y*rus_link1_centre_of_mass_y
     )
-    rus_J_1_zz = rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t - rus_J_1_t_2)
+    rus_J_1_in_spec1_zz = rus_link1_inertia_zz - rus_link1_mass*(rus_J_1_t - rus_J_1_t_2)
+    # (rus-rho_tip_3) connection point to the centre of mass of link 3
+    rus_rho_tip_3_in_spec3_x = rus_link3_centre_of_mass_x - rus_platform_joint_offset_x
+    # (rus-h_3) first moment of link 3 about the connection point
+    rus_h_3_in_spec3_x = rus_link3_mass*rus_rho_tip_3_in_spec3_x
+    rus_h_3_in_spec3_y = rus_link3_centre_of_mass_y*rus_link3_mass
+    rus_h_3_in_spec3_z = rus_link3_centre_of_mass_z*rus_link3_mass
+    # (rus-J_3) inertia tensor of link 3 about the connection point
+    rus_J_3_t = 0.5*rus_size_t
+    rus_J_3_t_2 = 0.5*rus_size_t_2
+    inv_rus_size_t = 1.0/rus_size_t
+    inv_rus_size_t_2 = 1.0/rus_size_t_2
+    rus_J_3_t_3 = rus_rho_tip_3_in_spec3_x*rus_rho_tip_3_in_spec3_x
+    rus_J_3_t_4 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y
+    rus_J_3_t_5 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z
+    rus_J_3_t_6 = rus_J_3_t_3 + rus_J_3_t_4 + rus_J_3_t_5
+    rus_J_3_in_spec3_xx = rus_link3_inertia_xx - rus_link3_mass*(rus_J_3_t_3 - rus_J_3_t_6)
+    rus_J_3_in_spec3_xy = (
+    rus_link3_inertia_xy - rus_link3_centre_of_mass_y*rus_link3_mass*rus_rho_tip_3_in_spec3_x
+    )
+    rus_J_3_in_spec3_xz = (
+    rus_link3_inertia_xz - rus_link3_centre_of_mass_z*rus_link3_mass*rus_rho_tip_3_in_spec3_x
+    )
+    rus_J_3_in_spec3_yy = rus_link3_inertia_yy - rus_link3_mass*(rus_J_3_t_4 - rus_J_3_t_6)
+    rus_J_3_in_spec3_yz = (
+    rus_link3_inertia_yz - rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass
+    )
+    rus_J_3_in_spec3_zz = rus_link3_inertia_zz - rus_link3_mass*(rus_J_3_t_5 - rus_J_3_t_6)
+    # (rus-rho2_1) squared amplitude
+    rus_rho2_1_t = rus_size*rus_size*rus_size_t_3
+    # (rus-w_3) reciprocal vector 3
+    rus_w_3_in_axes3_y = 1.0/rus_platform_joint_offset_x
+    # (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    rus_d_phi_3_in_axes3_xy = rus_h_3_in_spec3_z*rus_w_3_in_axes3_y
+    # (rus-trace_J_3) half the trace of that inertia tensor
+    rus_trace_J_3 = 0.5*rus_J_3_in_spec3_xx + 0.5*rus_J_3_in_spec3_yy + 0.5*rus_J_3_in_spec3_zz
+    # (rus-Sigma_3) second moment of mass of the links that turn with link 3
+    rus_Sigma_3_in_axes3_xx = rus_trace_J_3 - rus_J_3_in_spec3_xx
+    rus_Sigma_3_in_axes3_yy = rus_trace_J_3 - rus_J_3_in_spec3_zz
+    rus_Sigma_3_in_axes3_zz = rus_trace_J_3 - rus_J_3_in_spec3_yy
+    # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    rus_d_Gamma_3_t = rus_J_3_in_spec3_yy*rus_w_3_in_axes3_y
+    rus_d_Gamma_3_in_axes3_y = rus_d_Gamma_3_t + rus_h_3_in_spec3_x
+    # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
+    rus_mu_1_t = (
+    gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx + gravity_z*rus_base_frame_zx
+    )
+    rus_mu_1_t_2 = (
+    gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy + gravity_z*rus_base_frame_zy
+    )
+    # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_rus_rho2_1_t = 1.0/rus_rho2_1_t
+    inv_rus_size_t_3 = 1.0/rus_size_t_3
+    inv_rus_size = 1.0/rus_size
     # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    rus_d_c_yy = (
-    -inv_rus_platform_joint_offset_x*rus_d_Gamma_3_y - inv_rus_platform_joint_offset_x*rus_h_3_x
+    rus_d_c_in_axes3_yy = (
+    -rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_y - rus_h_3_in_spec3_x*rus_w_3_in_axes3_y
     )
     # (h_star) first moment about the platform origin
     rus_h_star_t = rus_link3_mass*rus_platform_point_x
@@ -631,140 +653,125 @@ def _prepare(p):
     rus_J_star_t_8 = rus_link3_mass*(rus_J_star_t_2 - rus_J_star_t_4)
     rus_J_star_t_9 = rus_link3_mass*rus_platform_point_y*rus_platform_point_z
     rus_J_star_t_10 = rus_link3_mass*(rus_J_star_t_3 - rus_J_star_t_4)
-    # (rus-trace_J_3) half the trace of that inertia tensor
-    rus_trace_J_3 = 0.5*rus_J_3_xx + 0.5*rus_J_3_yy + 0.5*rus_J_3_zz
-    # (rus-Sigma_3) second moment of mass of the links that turn with link 3
-    rus_Sigma_3_xx = rus_trace_J_3 - rus_J_3_xx
-    rus_Sigma_3_yy = rus_trace_J_3 - rus_J_3_zz
-    rus_Sigma_3_zz = rus_trace_J_3 - rus_J_3_yy
-    # (rus-h_1) first moment of link 1 about the origin of link 1
-    rus_h_1_x = rus_link1_centre_of_mass_x*rus_link1_mass
-    rus_h_1_y = rus_link1_centre_of_mass_y*rus_link1_mass
-    rus_h_1_z = rus_link1_centre_of_mass_z*rus_link1_mass
-    # (rus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    rus_g_r0_x = (
-    gravity_x*rus_base_frame_xx + gravity_y*rus_base_frame_yx + gravity_z*rus_base_frame_zx
-    )
-    rus_g_r0_y = (
-    gravity_x*rus_base_frame_xy + gravity_y*rus_base_frame_yy + gravity_z*rus_base_frame_zy
-    )
-    rus_g_r0_z = (
+    # (potential) potential energy
+    rus_g_in_axes1_z = (
     gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz + gravity_z*rus_base_frame_zz
     )
-    # (potential) potential energy
-    rus_b_r0_x = (
+    rus_potential_t = (
     rus_base_frame_xx*rus_base_point_x + rus_base_frame_yx*rus_base_point_y +
         rus_base_frame_zx*rus_base_point_z
     )
-    rus_b_r0_y = (
+    rus_potential_t_2 = (
     rus_base_frame_xy*rus_base_point_x + rus_base_frame_yy*rus_base_point_y +
         rus_base_frame_zy*rus_base_point_z
     )
-    rus_potential_t = (
+    rus_potential_t_3 = (
     rus_link1_mass*(rus_base_frame_xz*rus_base_point_x + rus_base_frame_yz*rus_base_point_y +
         rus_base_frame_zz*rus_base_point_z)
     )
-    # (rus-rho2_1) squared amplitude
-    inv_rus_rho2_1_t_4 = 1.0/rus_rho2_1_t
-    # (rus-rho2_2) squared amplitude
-    inv_rus_size_t = 1.0/rus_size_t
-    # (rus-w_1) reciprocal vector 1
-    inv_rus_size = 1.0/rus_size
-    total_rus = np.sum(np.broadcast_to(rus_link3_mass, _rus))
-    total_rus_x = np.sum(np.broadcast_to(rus_h_star_t, _rus))
-    total_rus_y = np.sum(np.broadcast_to(rus_h_star_t_2, _rus))
-    total_rus_z = np.sum(np.broadcast_to(rus_h_star_t_3, _rus))
-    total_rus_xx = np.sum(np.broadcast_to(rus_J_star_t_5, _rus))
-    total_rus_xy = np.sum(np.broadcast_to(rus_J_star_t_6, _rus))
-    total_rus_xz = np.sum(np.broadcast_to(rus_J_star_t_7, _rus))
-    total_rus_yy = np.sum(np.broadcast_to(rus_J_star_t_8, _rus))
-    total_rus_yz = np.sum(np.broadcast_to(rus_J_star_t_9, _rus))
-    total_rus_zz = np.sum(np.broadcast_to(rus_J_star_t_10, _rus))
-    total_rus_x_2 = np.sum(np.broadcast_to(rus_platform_point_x, _rus))
-    total_rus_y_2 = np.sum(np.broadcast_to(rus_platform_point_y, _rus))
-    total_rus_z_2 = np.sum(np.broadcast_to(rus_platform_point_z, _rus))
-    total_rus_2 = np.sum(np.broadcast_to(rus_size_t, _rus))
+    m_star_rus = np.sum(np.broadcast_to(rus_link3_mass, _rus))
+    h_star_rus_in_platform_x = np.sum(np.broadcast_to(rus_h_star_t, _rus))
+    h_star_rus_in_platform_y = np.sum(np.broadcast_to(rus_h_star_t_2, _rus))
+    h_star_rus_in_platform_z = np.sum(np.broadcast_to(rus_h_star_t_3, _rus))
+    J_star_rus_in_platform_xx = np.sum(np.broadcast_to(-rus_J_star_t_5, _rus))
+    J_star_rus_in_platform_xy = np.sum(np.broadcast_to(-rus_J_star_t_6, _rus))
+    J_star_rus_in_platform_xz = np.sum(np.broadcast_to(-rus_J_star_t_7, _rus))
+    J_star_rus_in_platform_yy = np.sum(np.broadcast_to(-rus_J_star_t_8, _rus))
+    J_star_rus_in_platform_yz = np.sum(np.broadcast_to(-rus_J_star_t_9, _rus))
+    J_star_rus_in_platform_zz = np.sum(np.broadcast_to(-rus_J_star_t_10, _rus))
+    b_c_rus_in_platform_x = np.sum(np.broadcast_to(rus_platform_point_x, _rus))
+    b_c_rus_in_platform_y = np.sum(np.broadcast_to(rus_platform_point_y, _rus))
+    b_c_rus_in_platform_z = np.sum(np.broadcast_to(rus_platform_point_z, _rus))
+    legs_size_rus = np.sum(np.broadcast_to(rus_size_t_3, _rus))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rus
+    m_star = m_star_rus + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_rus_x
-    h_star_y = h_star_t_2 + total_rus_y
-    h_star_z = h_star_t_3 + total_rus_z
+    h_star_in_platform_x = h_star_rus_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_rus_in_platform_y + h_star_t_2
+    h_star_in_platform_z = h_star_rus_in_platform_z + h_star_t_3
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_rus_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_rus_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_rus_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_rus_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_rus_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_rus_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_rus_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_rus_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_rus_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_rus_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_rus_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_rus_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_rus_x_2
-    b_c_y = 0.16666666666666666*total_rus_y_2
-    b_c_z = 0.16666666666666666*total_rus_z_2
+    b_c_in_platform_x = 0.16666666666666666*b_c_rus_in_platform_x
+    b_c_in_platform_y = 0.16666666666666666*b_c_rus_in_platform_y
+    b_c_in_platform_z = 0.16666666666666666*b_c_rus_in_platform_z
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_rus_2)
+    legs_size = sqrt(legs_size_rus)*spread_t
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-                    rus_J_3_xx, rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_J_3_zz, rus_Kd_1_t_2,
-                    rus_Kd_1_t_4, rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz,
-                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-                    rus_branch_1, rus_branch_2, rus_d_Gamma_3_t, rus_d_Gamma_3_y, rus_d_c_yy,
-                    rus_d_phi_3_t, rus_g_r0_x, rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x,
-                    rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
+                    rus_J_3_in_spec3_xy, rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz,
+                    rus_J_3_in_spec3_zz, rus_J_3_t, rus_J_3_t_2, rus_Sigma_3_in_axes3_xx,
+                    rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_d_Gamma_3_in_axes3_y, rus_d_Gamma_3_t, rus_d_c_in_axes3_yy,
+                    rus_d_phi_3_in_axes3_xy, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y,
+                    rus_h_3_in_spec3_x, rus_h_3_in_spec3_y, rus_h_3_in_spec3_z,
+                    rus_joint2_offset_x, rus_mu_1_t, rus_mu_1_t_2, rus_platform_joint_offset_x,
                     rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
-                    rus_rho2_1_t, rus_size, rus_size_t,),
+                    rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-                    rus_J_3_xx, rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_J_3_zz, rus_Kd_1_t_2,
-                    rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
-                    rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
-                    rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-                    rus_base_point_z, rus_branch_1, rus_branch_2, rus_d_Gamma_3_t,
-                    rus_d_Gamma_3_y, rus_d_c_yy, rus_d_phi_3_t, rus_h_3_x, rus_h_3_y, rus_h_3_z,
-                    rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-                    rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size,
-                    rus_size_t,),
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
+                    rus_J_3_in_spec3_xy, rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz,
+                    rus_J_3_in_spec3_zz, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_d_Gamma_3_in_axes3_y, rus_d_Gamma_3_t, rus_d_c_in_axes3_yy,
+                    rus_d_phi_3_in_axes3_xy, rus_h_3_in_spec3_x, rus_h_3_in_spec3_y,
+                    rus_h_3_in_spec3_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
+                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
+                    rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-                    rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4,
-                    rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx,
-                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
-                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
-                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
-                    rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x,
-                    rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
+                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+                    rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
+                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
+                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
+                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
+                    rus_branch_1, rus_branch_2, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y,
+                    rus_h_3_in_spec3_x, rus_h_3_in_spec3_y, rus_h_3_in_spec3_z,
+                    rus_joint2_offset_x, rus_mu_1_t, rus_mu_1_t_2, rus_platform_joint_offset_x,
                     rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
-                    rus_rho2_1_t, rus_size, rus_size_t,),
+                    rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -772,31 +779,34 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
                     rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
                     rus_branch_2, rus_joint2_offset_x, rus_platform_joint_offset_x,
                     rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
-                    rus_rho2_1_t, rus_size, rus_size_t,),
+                    rus_rho2_1_t, rus_size, rus_size_t_3,),
                 ),
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-                    rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4,
-                    rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx,
-                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
-                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
-                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
-                    rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x,
-                    rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_platform_joint_offset_x,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
+                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+                    rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
+                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
+                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
+                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
+                    rus_branch_1, rus_branch_2, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y,
+                    rus_h_3_in_spec3_x, rus_h_3_in_spec3_y, rus_h_3_in_spec3_z,
+                    rus_joint2_offset_x, rus_mu_1_t, rus_mu_1_t_2, rus_platform_joint_offset_x,
                     rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
-                    rus_rho2_1_t, rus_size, rus_size_t,),
+                    rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -804,13 +814,13 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
                     rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
                     rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
                     rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
                     rus_branch_2, rus_joint2_offset_x, rus_platform_joint_offset_x,
                     rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
-                    rus_rho2_1_t, rus_size_t,),
+                    rus_rho2_1_t, rus_size_t_3,),
                 ),
             ),
         ),
@@ -818,13 +828,13 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_Kd_1_t_2,
-                    rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
-                    rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
-                    rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-                    rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
-                    rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-                    rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,),
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_joint2_offset_x, rus_platform_joint_offset_x,
+                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
+                    rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -832,13 +842,13 @@ def _prepare(p):
         (),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_Kd_1_t_2,
-                    rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
-                    rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
-                    rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-                    rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
-                    rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-                    rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,),
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_joint2_offset_x, rus_platform_joint_offset_x,
+                    rus_platform_point_x, rus_platform_point_y, rus_platform_point_z,
+                    rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -846,47 +856,51 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-                    rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4,
-                    rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx,
-                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
-                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
-                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
-                    rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x,
-                    rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_link3_mass,
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
+                    rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+                    rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
+                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
+                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
+                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
+                    rus_branch_1, rus_branch_2, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y,
+                    rus_h_3_in_spec3_x, rus_h_3_in_spec3_y, rus_h_3_in_spec3_z,
+                    rus_joint2_offset_x, rus_link3_mass, rus_mu_1_t, rus_mu_1_t_2,
                     rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-                    rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,),
+                    rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
+                    rus_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_b_r0_x, rus_b_r0_y,
-                    rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-                    rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-                    rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z,
-                    rus_branch_1, rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_g_r0_z, rus_h_1_x,
-                    rus_h_1_y, rus_h_1_z, rus_h_3_x, rus_h_3_y, rus_h_3_z, rus_joint2_offset_x,
-                    rus_link1_mass, rus_platform_joint_offset_x, rus_platform_point_x,
-                    rus_platform_point_y, rus_platform_point_z, rus_potential_t, rus_rho2_1_t,
-                    rus_size_t,),
+        (inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+                    rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+                    rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+                    rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+                    rus_branch_2, rus_g_in_axes1_z, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y,
+                    rus_h_1_in_spec1_z, rus_h_3_in_spec3_x, rus_h_3_in_spec3_y,
+                    rus_h_3_in_spec3_z, rus_joint2_offset_x, rus_link1_mass, rus_mu_1_t,
+                    rus_mu_1_t_2, rus_platform_joint_offset_x, rus_platform_point_x,
+                    rus_platform_point_y, rus_platform_point_z, rus_potential_t,
+                    rus_potential_t_2, rus_potential_t_3, rus_rho2_1_t, rus_size_t_3,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_rus,
-        (inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_rho2_1_t_4, inv_rus_size, inv_rus_size_t,
-                    rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy,
+        (inv_rus_rho2_1_t, inv_rus_size, inv_rus_size_t, inv_rus_size_t_2, inv_rus_size_t_3,
+                    rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx, rus_base_frame_xy,
                     rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
                     rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
                     rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
                     rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
                     rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size,
-                    rus_size_t,),
+                    rus_size_t_3,),
                 ),
             ),
         ),
@@ -1388,9 +1402,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1445,530 +1460,565 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-            rus_J_3_xx, rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_J_3_zz, rus_Kd_1_t_2,
-            rus_Kd_1_t_4, rus_Sigma_3_xx, rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx,
-            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
-            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
-            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
-            rus_d_Gamma_3_t, rus_d_Gamma_3_y, rus_d_c_yy, rus_d_phi_3_t, rus_g_r0_x, rus_g_r0_y,
-            rus_h_1_x, rus_h_1_y, rus_h_3_x, rus_h_3_y, rus_h_3_z, rus_joint2_offset_x,
-            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
+            rus_J_3_in_spec3_xy, rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_in_spec3_zz,
+            rus_J_3_t, rus_J_3_t_2, rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy,
+            rus_Sigma_3_in_axes3_zz, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+            rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
+            rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
+            rus_base_point_z, rus_branch_1, rus_branch_2, rus_d_Gamma_3_in_axes3_y,
+            rus_d_Gamma_3_t, rus_d_c_in_axes3_yy, rus_d_phi_3_in_axes3_xy, rus_h_1_in_spec1_x,
+            rus_h_1_in_spec1_y, rus_h_3_in_spec3_x, rus_h_3_in_spec3_y, rus_h_3_in_spec3_z,
+            rus_joint2_offset_x, rus_mu_1_t, rus_mu_1_t_2, rus_platform_joint_offset_x,
+            rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t,
+            rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x
+        rus_J_3_t_10 = (
+        rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x
+        rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_14 = sqrt(rus_J_3_t_13)*rus_branch_1
+        rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x
+        rus_J_3_t_16 = (
+        rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
+            rus_J_3_t_5*rus_base_frame_zz
         )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t_3 = rus_c_2*rus_r_1_t
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
-        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_r0_x
-        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
-        rus_v_1_z = (
-        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
-            rus_r_1_r0_y*rus_s_3)
+        rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17
+        rus_J_3_t_19 = sqrt(rus_J_3_t_18)*rus_branch_2
+        rus_e_1_in_axes3_y = -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_J_3_in_axes2_xz = (
+        rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x - rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y
+        )
+        rus_J_3_in_axes1_zz = (
+        rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
+            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x)
         )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        inv_rus_J_3_t_12 = 1.0/rus_J_3_t_12
+        rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 - rus_J_3_t_11*rus_J_3_t_14)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
-        )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
-        )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            rus_base_frame_xz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            rus_base_frame_yz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            rus_base_frame_zz*rus_c_3
-        )
-        axis_x_rus_axes3_x = (
-        axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y
-        )
-        axis_x_rus_axes3_y = (
-        axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z
-        )
-        axis_x_rus_axes3_z = (
-        axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
-        )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        # (rus-w_2) reciprocal vector 2
-        inv_rus_r_1_t = 1.0/rus_r_1_t
-        rus_w_2_t = inv_rus_r_1_t*inv_rus_v_1_t*rus_v_1_z
-        # (rus-w_3) reciprocal vector 3
-        rus_w_3_t = inv_rus_platform_joint_offset_x*inv_rus_v_1_t*rus_v_1_t_2
-        # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rus_d_alpha_3_t = inv_rus_r_1_t*rus_s_3
-        rus_d_alpha_3_t_2 = inv_rus_r_1_t*rus_c_3
-        # (rus-L_c_3) moment about joint 3 that accelerates joint 3, per unit
-        rus_L_c_3_r0_y = rus_J_3_xy*rus_s_3 + rus_J_3_yz*rus_c_3
-        # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rus_d_Gamma_3_t_2 = inv_rus_r_1_t*rus_L_c_3_r0_y
-        rus_d_Gamma_3_x = (
-        rus_h_3_z - inv_rus_v_1_t*(rus_L_c_3_r0_y + rus_d_Gamma_3_t*rus_v_1_t_2 -
-            rus_d_Gamma_3_t_2*rus_v_1_z)
-        )
-        # (rus-J_3) inertia tensor of link 3 about the connection point
-        rus__y = (
-        rus_s_3*(rus_J_3_xx*rus_s_3 + rus_J_3_xz*rus_c_3) - rus_c_3*(-rus_J_3_xz*rus_s_3 -
-            rus_J_3_zz*rus_c_3)
-        )
-        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rus_d_Gamma_2_t = rus_c_3*rus_h_3_y
-        rus_d_Gamma_2_t_2 = inv_rus_r_1_t*rus__y
-        rus_d_Gamma_2_t_3 = inv_rus_platform_joint_offset_x*rus_L_c_3_r0_y
-        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_z
-        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_2
-        rus_d_Gamma_2_x = (
-        -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus__y + rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4)
-        )
-        rus_d_Gamma_2_y = rus_d_Gamma_2_t_3 - rus_h_3_y*rus_s_3
-        rus_d_Gamma_2_z = rus_d_Gamma_2_t_2 + rus_c_3*rus_h_3_x - rus_h_3_z*rus_s_3
-        # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rus_d_Gamma_1_x = (
-        -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus_J_1_zz + rus__y + rus_d_Gamma_2_t_5 -
-            rus_d_Gamma_2_t_4)
-        )
-        # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rus_d_c_xx = (
-        inv_rus_v_1_t*rus_d_Gamma_1_x + rus_d_Gamma_3_x*rus_w_3_t + rus_h_3_z*rus_w_3_t -
-            rus_d_Gamma_2_x*rus_w_2_t - rus_h_3_y*(inv_rus_v_1_t*rus_c_3 - rus_c_3*rus_w_2_t)
-        )
-        rus_d_c_xy = (
-        inv_rus_v_1_t*rus_d_Gamma_2_y + rus_d_Gamma_3_y*rus_w_3_t - rus_d_phi_3_t -
-            rus_d_Gamma_2_y*rus_w_2_t
-        )
-        rus_d_c_xz = (
-        inv_rus_v_1_t*rus_d_Gamma_2_z + rus_d_Gamma_3_t_2*rus_w_3_t + rus_d_alpha_3_t_2*rus_h_3_y
-            - rus_d_Gamma_2_z*rus_w_2_t
-        )
-        rus_d_c_yz = rus_d_alpha_3_t*rus_h_3_y - inv_rus_platform_joint_offset_x*rus_d_Gamma_3_t_2
-        # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
-        rus_Q_t = rus_d_c_xx - rus_d_c_yy
-        rus_Q_t_2 = 0.5*rus_Q_t
-        rus_Q_t_3 = (
-        rus_d_c_xx + inv_rus_r_1_t*rus_d_Gamma_2_z + rus_d_alpha_3_t_2*rus_h_3_x -
-            rus_d_alpha_3_t*rus_h_3_z
-        )
-        rus_Q_t_4 = 0.5*rus_Q_t_3
-        rus_Q_t_5 = (
-        axis_x_rus_axes3_x*rus_d_c_xy + axis_z_rus_axes3_in_base_x*rus_d_c_yz -
-            axis_y_rus_axes3_in_base_x*rus_Q_t_2
-        )
-        rus_Q_t_6 = (
-        axis_x_rus_axes3_y*rus_d_c_xy + axis_z_rus_axes3_in_base_y*rus_d_c_yz -
-            axis_y_rus_axes3_in_base_y*rus_Q_t_2
-        )
-        rus_Q_t_7 = (
-        axis_x_rus_axes3_z*rus_d_c_xy + axis_z_rus_axes3_in_base_z*rus_d_c_yz -
-            axis_y_rus_axes3_in_base_z*rus_Q_t_2
-        )
-        rus_Q_t_8 = axis_z_rus_axes3_in_base_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_xz
-        rus_Q_t_9 = axis_z_rus_axes3_in_base_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_xz
-        rus_Q_t_10 = axis_z_rus_axes3_in_base_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_xz
-        rus_Q_t_11 = axis_y_rus_axes3_in_base_x*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_8
-        rus_Q_t_12 = 2.0*rus_Q_t_11 + rus_d_c_xx
-        rus_Q_t_13 = (
-        axis_y_rus_axes3_in_base_x*rus_Q_t_6 + axis_y_rus_axes3_in_base_y*rus_Q_t_5 -
-            axis_z_rus_axes3_in_base_x*rus_Q_t_9 - axis_z_rus_axes3_in_base_y*rus_Q_t_8
-        )
-        rus_Q_t_14 = (
-        axis_y_rus_axes3_in_base_x*rus_Q_t_7 + axis_y_rus_axes3_in_base_z*rus_Q_t_5 -
-            axis_z_rus_axes3_in_base_x*rus_Q_t_10 - axis_z_rus_axes3_in_base_z*rus_Q_t_8
-        )
-        rus_Q_t_15 = axis_y_rus_axes3_in_base_y*rus_Q_t_6 - axis_z_rus_axes3_in_base_y*rus_Q_t_9
-        rus_Q_t_16 = 2.0*rus_Q_t_15 + rus_d_c_xx
-        rus_Q_t_17 = (
-        axis_y_rus_axes3_in_base_y*rus_Q_t_7 + axis_y_rus_axes3_in_base_z*rus_Q_t_6 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_10 - axis_z_rus_axes3_in_base_z*rus_Q_t_9
-        )
-        rus_Q_t_18 = axis_y_rus_axes3_in_base_z*rus_Q_t_7 - axis_z_rus_axes3_in_base_z*rus_Q_t_10
-        rus_Q_t_19 = 2.0*rus_Q_t_18 + rus_d_c_xx
-        # (M_ta) coupling block of M
-        rus_M_ta_t = rus_Q_t_13*rus_q_in_base_z
-        rus_M_ta_t_2 = rus_Q_t_14*rus_q_in_base_y
-        rus_M_ta_t_3 = rus_M_ta_t - rus_M_ta_t_2
-        rus_M_ta_t_4 = rus_Q_t_12*rus_q_in_base_z - rus_Q_t_14*rus_q_in_base_x
-        rus_M_ta_t_5 = rus_Q_t_12*rus_q_in_base_y - rus_Q_t_13*rus_q_in_base_x
-        rus_M_ta_t_6 = rus_Q_t_16*rus_q_in_base_z - rus_Q_t_17*rus_q_in_base_y
-        rus_M_ta_t_7 = rus_Q_t_17*rus_q_in_base_x
-        rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7
-        rus_M_ta_t_9 = rus_Q_t_13*rus_q_in_base_y - rus_Q_t_16*rus_q_in_base_x
-        rus_M_ta_t_10 = rus_Q_t_17*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_y
-        rus_M_ta_t_11 = rus_Q_t_14*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_x
-        rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
-        # (M_aa) rotational block of M
-        rus_M_aa_t = rus_M_ta_t_6*rus_q_in_base_z - rus_M_ta_t_10*rus_q_in_base_y
-        rus_M_aa_t_2 = rus_M_ta_t_8*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_y
-        rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_in_base_y + rus_M_ta_t_9*rus_q_in_base_z
-        rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_x
-        rus_M_aa_t_5 = rus_M_ta_t_12*rus_q_in_base_x + rus_M_ta_t_5*rus_q_in_base_z
-        rus_M_aa_t_6 = rus_M_ta_t_5*rus_q_in_base_y - rus_M_ta_t_9*rus_q_in_base_x
+        rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 + rus_J_3_t_14*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_18 = 1.0/rus_J_3_t_18
+        rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19
         # (rus-S_dot) velocity of the connection point
-        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
-        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
-        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
+        rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
+        rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x
         rus_S_dot_x = rus_S_dot_t + t_dot_x
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
-        # (rus-qd_3) rate of joint 3
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_c_2*rus_r_1_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
+        rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z
+        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_z = (
+        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t + rus_e_1_in_axes3_y*rus_r_1_in_axes1_z)
+            - rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
+            rus_e_1_in_axes3_y*rus_v_1_t)
+        )
+        # (rus-w_1) reciprocal vector 1
+        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_e_1_in_axes3_x*rus_s_2
+        rus_w_1_t_4 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 +
+            rus_base_frame_xz*rus_e_1_in_axes3_y
+        )
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 +
+            rus_base_frame_yz*rus_e_1_in_axes3_y
+        )
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 +
+            rus_base_frame_zz*rus_e_1_in_axes3_y
+        )
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
+        # (rus-w_3) reciprocal vector 3
+        rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y
+        # (rus-qd_1) rate of joint 1
         rus_qd_1 = (
-        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
+        # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
-        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
-            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
+        axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3
         )
-        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
+        rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_in_axes3_x = rus_e_1_in_axes3_x*rus_qd_1
+        rus_omega_1_in_axes3_y = rus_e_1_in_axes3_y*rus_qd_1
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_z = (
-        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1
+        rus_omega_2_in_axes2_z = (
+        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x +
+            axis_z_rus_axes3_y*rus_S_dot_y + axis_z_rus_axes3_z*rus_S_dot_z -
+            rus_qd_1*rus_v_1_in_axes3_z)
         )
-        rus_omega_2_t = rus_omega_2_z*rus_s_3
-        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
-        # (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3
-        rus_zeta_3_y = rus_omega_2_t*rus_qd_3
+        rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = rus_e_1_in_axes3_y*rus_omega_2_in_axes2_z
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
+        rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
+        rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
         # (rus-u_1) centripetal acceleration of the connection point
         rus_u_1_x = omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
         rus_u_1_y = omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
         rus_u_1_z = omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
-        # (rus-W_3) centripetal tensor of link 3
-        rus_W_3_t = rus_omega_2_t*rus_omega_2_t
-        rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2
-        rus_W_3_t_3 = rus_qd_3*rus_qd_3
-        rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2
-        # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_t = rus_qd_1*rus_s_3
-        rus_omega_1_t_2 = rus_c_3*rus_qd_1
-        # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
-        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
-        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
-        rus_bias_x = (
-        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
-        )
-        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
-        rus_bias_z = (
-        rus_omega_2_t*rus_qd_3_t + rus_platform_joint_offset_x*rus_zeta_3_y -
-            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
-        )
-        # (rus-u_1) centripetal acceleration of the connection point
-        rus_u_1_tip_x = (
+        rus_u_1_in_axes3_x = (
         axis_x_rus_axes3_x*rus_u_1_x + axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z
         )
-        rus_u_1_tip_y = (
-        axis_y_rus_axes3_in_base_x*rus_u_1_x + axis_y_rus_axes3_in_base_y*rus_u_1_y +
-            axis_y_rus_axes3_in_base_z*rus_u_1_z
+        rus_u_1_in_axes3_y = (
+        axis_y_rus_axes3_x*rus_u_1_x + axis_y_rus_axes3_y*rus_u_1_y + axis_y_rus_axes3_z*rus_u_1_z
         )
-        rus_u_1_tip_z = (
-        axis_z_rus_axes3_in_base_x*rus_u_1_x + axis_z_rus_axes3_in_base_y*rus_u_1_y +
-            axis_z_rus_axes3_in_base_z*rus_u_1_z
+        rus_u_1_in_axes3_z = (
+        axis_z_rus_axes3_x*rus_u_1_x + axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z
+        )
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
+        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_2 = (
+        rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x +
+            rus_bias_t*rus_e_1_in_axes3_y*rus_omega_1_in_axes3_y
+        )
+        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_in_axes3_x = (
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_qd_3*rus_qd_3_t
+        )
+        rus_bias_in_axes3_y = (
+        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        )
+        rus_bias_in_axes3_z = (
+        rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
         )
         # (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rus_rel_o_x = rus_u_1_tip_x - rus_bias_x
-        rus_rel_o_y = rus_u_1_tip_y - rus_bias_y
-        rus_rel_o_z = rus_u_1_tip_z - rus_bias_z
+        rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x
+        rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y
+        rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z
+        # (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rus_qdd_1_o_t = inv_rus_v_1_t_2*rus_rel_o_in_axes3_x
         # (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        rus_qdd_1_o = inv_rus_v_1_t*rus_rel_o_x
-        rus_qdd_3_o = inv_rus_platform_joint_offset_x*(rus_qdd_1_o*rus_v_1_t_2 - rus_rel_o_y)
+        rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_3 - rus_rel_o_in_axes3_y)
         # (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rus_alpha_2_o_z = inv_rus_r_1_t*(rus_rel_o_z + rus_qdd_1_o*rus_v_1_z) - rus_qdd_1_o
-        rus_alpha_2_o_t = rus_alpha_2_o_z*rus_s_3
-        rus_alpha_2_o_t_2 = rus_alpha_2_o_z*rus_c_3
+        rus_alpha_2_o_in_axes2_z = (
+        rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z + rus_qdd_1_o_t*rus_v_1_in_axes3_z) -
+            rus_qdd_1_o_t
+        )
+        rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
+        rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_y
+        # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
+        rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z
         # (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        rus_alpha_3_o_x = rus_alpha_2_o_t - rus_zeta_3_x
-        rus_alpha_3_o_y = -rus_alpha_2_o_t_2 - rus_zeta_3_y
+        rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
+        rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
         # (rus-B_3_o) remainder of the acceleration tensor of link 3
-        rus_B_3_o_xy = rus_qdd_3_o - rus_W_3_xy
-        rus_B_3_o_yx = -rus_W_3_xy - rus_qdd_3_o
-        rus_B_3_o_zx = rus_zeta_3_y - rus_alpha_3_o_y
-        rus_B_3_o_zy = rus_alpha_3_o_x - rus_zeta_3_x
+        rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o
+        rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o
+        rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y
+        rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x
         # (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rus_acc_3_o_x = (
-        rus_u_1_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
+        rus_acc_3_o_in_axes3_x = (
+        rus_u_1_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
             axis_x_rus_axes3_z*gravity_z
         )
-        rus_acc_3_o_y = (
-        rus_u_1_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_o_in_axes3_y = (
+        rus_u_1_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
+            axis_y_rus_axes3_z*gravity_z
         )
-        rus_acc_3_o_z = (
-        rus_u_1_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_o_in_axes3_z = (
+        rus_u_1_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
+            axis_z_rus_axes3_z*gravity_z
         )
         # (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        rus_mu_3_o_x = (
-        rus_B_3_o_yx*rus_J_3_xy + rus_B_3_o_zx*rus_J_3_xz + rus_B_3_o_zy*rus_Sigma_3_yy +
-            rus_Sigma_3_zz*rus_alpha_2_o_t - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3) -
-            rus_acc_3_o_y*rus_h_3_y - rus_acc_3_o_z*rus_h_3_z
+        rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
+        rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
+        rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_o_in_axes3_x = (
+        rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
+            rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2
+            - rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_z
         )
-        rus_mu_3_o_y = (
-        rus_B_3_o_xy*rus_J_3_yz + rus_acc_3_o_x*rus_h_3_y - rus_B_3_o_zx*rus_Sigma_3_xx -
-            rus_B_3_o_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t - rus_W_3_t_3) -
-            rus_Sigma_3_zz*rus_alpha_2_o_t_2 - rus_acc_3_o_z*rus_h_3_x
+        rus_mu_3_o_in_axes3_y = (
+        rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y +
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
+            rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_x
         )
-        rus_mu_3_o_z = (
-        rus_B_3_o_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_o_t + rus_J_3_yz*rus_alpha_2_o_t_2 +
-            rus_acc_3_o_x*rus_h_3_z + rus_acc_3_o_y*rus_h_3_x - rus_B_3_o_xy*rus_Sigma_3_yy -
-            rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2)
+        rus_mu_3_o_in_axes3_z = (
+        rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x +
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_x
+            - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
+            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y
         )
-        rus_mu_3_o_r0_y = rus_mu_3_o_x*rus_s_3 - rus_c_3*rus_mu_3_o_y
+        rus_mu_3_o_in_axes1_z = (
+        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x + rus_e_1_in_axes3_y*rus_mu_3_o_in_axes3_y
+        )
+        # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z
+        rus_d_Gamma_3_in_axes3_x = (
+        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz + rus_d_Gamma_3_t*rus_v_1_t_3 -
+            rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z)
+        )
+        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
+        rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y
+        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z
+        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3
+        rus_d_Gamma_2_in_axes3_x = (
+        rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 -
+            rus_d_Gamma_2_t_4)
+        )
+        rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_in_axes3_z = (
+        rus_d_Gamma_2_t_2 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_z -
+            rus_e_1_in_axes3_y*rus_h_3_in_spec3_x
+        )
         # (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_o_z = (
-        rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) - rus_J_1_zz*rus_qdd_1_o -
-            rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)
+        rus_mu_1_o_in_axes1_z = (
+        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
+            rus_J_1_in_spec1_zz*rus_qdd_1_o_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)
         )
         # (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rus_N_1_o_z = rus_mu_1_o_z + rus_mu_3_o_r0_y
+        rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
+        # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rus_d_Gamma_1_in_axes3_x = (
+        rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz +
+            rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4)
+        )
         # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rus_G_o_t = inv_rus_r_1_t*rus_mu_3_o_r0_y
-        rus_G_o_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_o_z
+        rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
+        rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
+        # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rus_d_c_in_axes3_xx = (
+        inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
+            rus_h_3_in_spec3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
+            inv_rus_v_1_t_2*rus_e_1_in_axes3_y)
+        )
+        rus_d_c_in_axes3_xy = (
+        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y + rus_d_Gamma_3_in_axes3_y*rus_w_3_t -
+            rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x
+        )
+        rus_d_c_in_axes3_xz = (
+        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y
+        )
+        rus_d_c_in_axes3_yz = (
+        rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
+        )
         # (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rus_c_o_x = (
-        inv_rus_v_1_t*(rus_N_1_o_z + rus_G_o_t_2*rus_v_1_t_2 - rus_G_o_t*rus_v_1_z) +
-            rus_B_3_o_xy*rus_h_3_z + rus_alpha_2_o_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
-            rus_W_3_t_3)
+        rus_c_o_in_axes3_x = (
+        inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_3 -
+            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
+            rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
-        rus_c_o_y = (
-        rus_alpha_2_o_t*rus_h_3_y - rus_G_o_t_2 - rus_B_3_o_yx*rus_h_3_x - rus_h_3_z*(rus_W_3_t +
-            rus_W_3_t_3)
+        rus_c_o_in_axes3_y = (
+        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y -
+            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_o_t +
+            rus_mu_3_o_t_3)
         )
-        rus_c_o_z = (
-        rus_B_3_o_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_o_t -
-            rus_B_3_o_zx*rus_h_3_x
+        rus_c_o_in_axes3_z = (
+        rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_o_t +
+            rus_mu_3_o_t_2) - rus_G_o_in_axes3_z - rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
         )
+        # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
+        rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
+        rus_Q_t_2 = 0.5*rus_Q_t
+        rus_Q_t_3 = (
+        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
+            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x
+        )
+        rus_Q_t_4 = 0.5*rus_Q_t_3
+        rus_Q_t_5 = (
+        axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + axis_z_rus_axes3_x*rus_d_c_in_axes3_yz -
+            axis_y_rus_axes3_x*rus_Q_t_2
+        )
+        rus_Q_t_6 = (
+        axis_x_rus_axes3_y*rus_d_c_in_axes3_xy + axis_z_rus_axes3_y*rus_d_c_in_axes3_yz -
+            axis_y_rus_axes3_y*rus_Q_t_2
+        )
+        rus_Q_t_7 = (
+        axis_x_rus_axes3_z*rus_d_c_in_axes3_xy + axis_z_rus_axes3_z*rus_d_c_in_axes3_yz -
+            axis_y_rus_axes3_z*rus_Q_t_2
+        )
+        rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_in_axes3_xz
+        rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_in_axes3_xz
+        rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
+        rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8
+        rus_Q_xx = -2.0*rus_Q_t_11 - rus_d_c_in_axes3_xx
+        rus_Q_xy = (
+        axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 - axis_y_rus_axes3_x*rus_Q_t_6
+            - axis_y_rus_axes3_y*rus_Q_t_5
+        )
+        rus_Q_xz = (
+        axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
+            axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5
+        )
+        rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9
+        rus_Q_yy = -2.0*rus_Q_t_12 - rus_d_c_in_axes3_xx
+        rus_Q_yz = (
+        axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
+            axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6
+        )
+        rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10
+        rus_Q_zz = -2.0*rus_Q_t_13 - rus_d_c_in_axes3_xx
         # (rus-U) velocity and gravity terms of the leg force
-        rus_U_in_base_x = (
-        -axis_x_rus_axes3_x*rus_c_o_x - axis_y_rus_axes3_in_base_x*rus_c_o_y -
-            axis_z_rus_axes3_in_base_x*rus_c_o_z
+        rus_U_x = (
+        -axis_x_rus_axes3_x*rus_c_o_in_axes3_x - axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+            axis_z_rus_axes3_x*rus_c_o_in_axes3_z
         )
-        rus_U_in_base_y = (
-        -axis_x_rus_axes3_y*rus_c_o_x - axis_y_rus_axes3_in_base_y*rus_c_o_y -
-            axis_z_rus_axes3_in_base_y*rus_c_o_z
+        rus_U_y = (
+        -axis_x_rus_axes3_y*rus_c_o_in_axes3_x - axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+            axis_z_rus_axes3_y*rus_c_o_in_axes3_z
         )
-        rus_U_in_base_z = (
-        -axis_x_rus_axes3_z*rus_c_o_x - axis_y_rus_axes3_in_base_z*rus_c_o_y -
-            axis_z_rus_axes3_in_base_z*rus_c_o_z
+        rus_U_z = (
+        -axis_x_rus_axes3_z*rus_c_o_in_axes3_x - axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+            axis_z_rus_axes3_z*rus_c_o_in_axes3_z
         )
+        # (M_ta) coupling block of M
+        rus_M_ta_t = -rus_Q_xy*rus_q_z
+        rus_M_ta_t_2 = rus_Q_xz*rus_q_y
+        rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2
+        rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x
+        rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y
+        rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z
+        rus_M_ta_t_7 = rus_Q_yz*rus_q_x
+        rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7
+        rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y
+        rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z
+        rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x
+        rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
+        # (M_aa) rotational block of M
+        rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z
+        rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y + rus_M_ta_t_8*rus_q_z
+        rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z
+        rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x
+        rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x
+        rus_M_aa_t_6 = rus_M_ta_t_9*rus_q_x - rus_M_ta_t_5*rus_q_y
         # (Z_a) rotational part of Z
-        rus_Z_a_t = rus_U_in_base_z*rus_q_in_base_y - rus_U_in_base_y*rus_q_in_base_z
-        rus_Z_a_t_2 = rus_U_in_base_x*rus_q_in_base_z - rus_U_in_base_z*rus_q_in_base_x
-        rus_Z_a_t_3 = rus_U_in_base_y*rus_q_in_base_x - rus_U_in_base_x*rus_q_in_base_y
-        # (rus-w_1) reciprocal vector 1
-        rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t
-        rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t
-        rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t
+        rus_Z_a_t = rus_U_z*rus_q_y - rus_U_y*rus_q_z
+        rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x
+        rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y
         # (rus-H_a_1) moment of the column's unit force about the platform origin
-        rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5
-        rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3
-        rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4
+        rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9
+        rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
+        rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+        ok & m.every(leg, (abs(rus_J_3_t_12) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) &
+            (rus_J_3_t_13 >= 0.0) & (abs(rus_J_3_t_18) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_r_1_t) > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
         )
         sums = m.added(sums, leg, (
-        rus_Q_t_12, rus_Q_t_13, rus_Q_t_14, rus_Q_t_16, rus_Q_t_17, rus_Q_t_19, rus_M_ta_t_3,
+        rus_Q_xx, rus_Q_xy, rus_Q_xz, rus_Q_yy, rus_Q_yz, rus_Q_zz, rus_M_ta_t_3,
             rus_M_ta_t_4, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_8, rus_M_ta_t_9,
             rus_M_ta_t_10, rus_M_ta_t_11, rus_M_ta_t_12, rus_M_aa_t, rus_M_aa_t_2,
-            rus_M_aa_t_3, rus_M_aa_t_4, rus_M_aa_t_5, rus_M_aa_t_6, rus_U_in_base_x,
-            rus_U_in_base_y, rus_U_in_base_z, rus_Z_a_t, rus_Z_a_t_2, rus_Z_a_t_3,
+            rus_M_aa_t_3, rus_M_aa_t_4, rus_M_aa_t_5, rus_M_aa_t_6, rus_U_x, rus_U_y, rus_U_z,
+            rus_Z_a_t, rus_Z_a_t_2, rus_Z_a_t_3,
         ))
-        out_H[_H_rus[0][leg]] = -rus_w_1_t_3
-        out_H[_H_rus[1][leg]] = -rus_w_1_t_4
-        out_H[_H_rus[2][leg]] = -rus_w_1_t_5
+        # (rus-w_1) reciprocal vector 1
+        out_H[_H_rus[0][leg]] = -rus_w_1_t_7
+        out_H[_H_rus[1][leg]] = -rus_w_1_t_8
+        out_H[_H_rus[2][leg]] = -rus_w_1_t_9
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rus[3][leg]] = rus_H_a_1_x
         out_H[_H_rus[4][leg]] = rus_H_a_1_y
         out_H[_H_rus[5][leg]] = rus_H_a_1_z
     (
-    total_rus_xx, total_rus_xy, total_rus_xz, total_rus_yy, total_rus_yz, total_rus_zz,
-        total_rus_xx_2, total_rus_xy_2, total_rus_xz_2, total_rus_yx, total_rus_yy_2,
-        total_rus_yz_2, total_rus_zx, total_rus_zy, total_rus_zz_2, total_rus_xx_3,
-        total_rus_xy_3, total_rus_xz_3, total_rus_yy_3, total_rus_yz_3, total_rus_zz_3,
-        total_rus_x, total_rus_y, total_rus_z, total_rus_x_2, total_rus_y_2, total_rus_z_2,
+    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, M_ta_xx, M_ta_rus_xy,
+        M_ta_rus_xz, M_ta_rus_yx, M_ta_t, M_ta_rus_yz, M_ta_rus_zx, M_ta_rus_zy, M_ta_zz,
+        M_aa_rus_xx, M_aa_rus_xy, M_aa_rus_xz, M_aa_rus_yy, M_aa_rus_yz, M_aa_rus_zz, Z_t_rus_x,
+        Z_t_rus_y, Z_t_rus_z, Z_a_rus_x, Z_a_rus_y, Z_a_rus_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rus_xx
-    M_tt_yy = m_star - total_rus_yy
-    M_tt_zz = m_star - total_rus_zz
+    M_tt_xx = M_tt_rus_xx + m_star
+    M_tt_yy = M_tt_rus_yy + m_star
+    M_tt_zz = M_tt_rus_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rus_xy_2
-    M_ta_xz = total_rus_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rus_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rus_yz_2
-    M_ta_zx = h_star_in_base_y + total_rus_zx
-    M_ta_zy = -h_star_in_base_x - total_rus_zy
+    M_ta_xy = M_ta_rus_xy + h_star_z
+    M_ta_xz = M_ta_rus_xz - h_star_y
+    M_ta_yx = M_ta_rus_yx - h_star_z
+    M_ta_yz = M_ta_rus_yz + h_star_x
+    M_ta_zx = M_ta_rus_zx + h_star_y
+    M_ta_zy = M_ta_rus_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rus_xx_3
-    M_aa_xy = J_star_t_9 + total_rus_xy_3
-    M_aa_xz = J_star_t_10 - total_rus_xz_3
-    M_aa_yy = J_star_t_13 - total_rus_yy_3
-    M_aa_yz = J_star_t_15 + total_rus_yz_3
-    M_aa_zz = J_star_t_17 - total_rus_zz_3
+    M_aa_xx = J_star_xx + M_aa_rus_xx
+    M_aa_xy = J_star_xy + M_aa_rus_xy
+    M_aa_xz = J_star_xz + M_aa_rus_xz
+    M_aa_yy = J_star_yy + M_aa_rus_yy
+    M_aa_yz = J_star_yz + M_aa_rus_yz
+    M_aa_zz = J_star_zz + M_aa_rus_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rus_x
-    Z_t_y = Z_p_y + total_rus_y
-    Z_t_z = Z_p_z + total_rus_z
+    Z_t_x = Z_p_x + Z_t_rus_x
+    Z_t_y = Z_p_y + Z_t_rus_y
+    Z_t_z = Z_p_z + Z_t_rus_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rus_x_2
-    Z_a_y = Z_q_in_base_y + total_rus_y_2
-    Z_a_z = Z_q_in_base_z + total_rus_z_2
+    Z_a_x = Z_a_rus_x + Z_q_x
+    Z_a_y = Z_a_rus_y + Z_q_y
+    Z_a_z = Z_a_rus_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rus_xy
-    out_M[6] = -total_rus_xy
-    out_M[2] = -total_rus_xz
-    out_M[12] = -total_rus_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rus_yz
-    out_M[13] = -total_rus_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_rus_xx_2
-    out_M[18] = total_rus_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rus_yy_2
-    out_M[25] = -total_rus_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_rus_zz_2
-    out_M[32] = -total_rus_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1978,9 +2028,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -1992,8 +2044,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2033,327 +2086,322 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-            rus_J_3_xx, rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_J_3_zz, rus_Kd_1_t_2,
-            rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xx,
+            rus_J_3_in_spec3_xy, rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_in_spec3_zz,
+            rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
             rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
             rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-            rus_base_point_z, rus_branch_1, rus_branch_2, rus_d_Gamma_3_t, rus_d_Gamma_3_y,
-            rus_d_c_yy, rus_d_phi_3_t, rus_h_3_x, rus_h_3_y, rus_h_3_z, rus_joint2_offset_x,
+            rus_base_point_z, rus_branch_1, rus_branch_2, rus_d_Gamma_3_in_axes3_y,
+            rus_d_Gamma_3_t, rus_d_c_in_axes3_yy, rus_d_phi_3_in_axes3_xy, rus_h_3_in_spec3_x,
+            rus_h_3_in_spec3_y, rus_h_3_in_spec3_z, rus_joint2_offset_x,
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
-        # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        # (rus-J_3) inertia tensor of link 3 about the connection point
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
-        # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
+        rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x
+        rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y
+        rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z
+        rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
+        rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
+        rus_J_3_t_8 = (
+        rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
+        rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x
+        rus_J_3_t_10 = (
+        rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy
         )
-        # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
-        # (rus-rho2_1) squared amplitude
-        rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
-        # (rus-disc_1) discriminant
-        rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
-        # (rus-root_1) root, with the sign of the branch
-        rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x
+        rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_14 = sqrt(rus_J_3_t_13)*rus_branch_1
+        rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x
+        rus_J_3_t_16 = (
+        rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
+            rus_J_3_t_5*rus_base_frame_zz
         )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t_3 = rus_c_2*rus_r_1_t
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
-        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_r0_x
-        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
-        rus_v_1_z = (
-        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
-            rus_r_1_r0_y*rus_s_3)
+        rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17
+        rus_J_3_t_19 = sqrt(rus_J_3_t_18)*rus_branch_2
+        rus_e_1_in_axes3_y = -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_J_3_in_axes2_xz = (
+        rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x - rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y
+        )
+        rus_J_3_in_axes1_zz = (
+        rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
+            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
+            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x)
         )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
-        rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
+        inv_rus_J_3_t_12 = 1.0/rus_J_3_t_12
+        rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 - rus_J_3_t_11*rus_J_3_t_14)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 + rus_J_3_t_14*rus_J_3_t_9)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_J_3_t_18 = 1.0/rus_J_3_t_18
+        rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_c_2*rus_r_1_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
+        rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z
+        rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_z = (
+        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t + rus_e_1_in_axes3_y*rus_r_1_in_axes1_z)
+            - rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
+            rus_e_1_in_axes3_y*rus_v_1_t)
+        )
         # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
-        )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
-        )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            rus_base_frame_xz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            rus_base_frame_yz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            rus_base_frame_zz*rus_c_3
-        )
-        axis_x_rus_axes3_x = (
-        axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y
-        )
-        axis_x_rus_axes3_y = (
-        axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z
-        )
-        axis_x_rus_axes3_z = (
-        axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
-        )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
         # (rus-w_2) reciprocal vector 2
-        inv_rus_r_1_t = 1.0/rus_r_1_t
-        rus_w_2_t = inv_rus_r_1_t*inv_rus_v_1_t*rus_v_1_z
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z
         # (rus-w_3) reciprocal vector 3
-        rus_w_3_t = inv_rus_platform_joint_offset_x*inv_rus_v_1_t*rus_v_1_t_2
+        rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rus_d_alpha_3_t = inv_rus_r_1_t*rus_s_3
-        rus_d_alpha_3_t_2 = inv_rus_r_1_t*rus_c_3
-        # (rus-L_c_3) moment about joint 3 that accelerates joint 3, per unit
-        rus_L_c_3_r0_y = rus_J_3_xy*rus_s_3 + rus_J_3_yz*rus_c_3
+        rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
+        rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rus_d_Gamma_3_t_2 = inv_rus_r_1_t*rus_L_c_3_r0_y
-        rus_d_Gamma_3_x = (
-        rus_h_3_z - inv_rus_v_1_t*(rus_L_c_3_r0_y + rus_d_Gamma_3_t*rus_v_1_t_2 -
-            rus_d_Gamma_3_t_2*rus_v_1_z)
-        )
-        # (rus-J_3) inertia tensor of link 3 about the connection point
-        rus__y = (
-        rus_s_3*(rus_J_3_xx*rus_s_3 + rus_J_3_xz*rus_c_3) - rus_c_3*(-rus_J_3_xz*rus_s_3 -
-            rus_J_3_zz*rus_c_3)
+        rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z
+        rus_d_Gamma_3_in_axes3_x = (
+        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz + rus_d_Gamma_3_t*rus_v_1_t_3 -
+            rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rus_d_Gamma_2_t = rus_c_3*rus_h_3_y
-        rus_d_Gamma_2_t_2 = inv_rus_r_1_t*rus__y
-        rus_d_Gamma_2_t_3 = inv_rus_platform_joint_offset_x*rus_L_c_3_r0_y
-        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_z
-        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_2
-        rus_d_Gamma_2_x = (
-        -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus__y + rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4)
-        )
-        rus_d_Gamma_2_y = rus_d_Gamma_2_t_3 - rus_h_3_y*rus_s_3
-        rus_d_Gamma_2_z = rus_d_Gamma_2_t_2 + rus_c_3*rus_h_3_x - rus_h_3_z*rus_s_3
-        # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rus_d_Gamma_1_x = (
-        -rus_d_Gamma_2_t - inv_rus_v_1_t*(rus_J_1_zz + rus__y + rus_d_Gamma_2_t_5 -
+        rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
+        rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y
+        rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z
+        rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3
+        rus_d_Gamma_2_in_axes3_x = (
+        rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 -
             rus_d_Gamma_2_t_4)
         )
+        rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_in_axes3_z = (
+        rus_d_Gamma_2_t_2 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_z -
+            rus_e_1_in_axes3_y*rus_h_3_in_spec3_x
+        )
+        # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rus_d_Gamma_1_in_axes3_x = (
+        rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz +
+            rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4)
+        )
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rus_d_c_xx = (
-        inv_rus_v_1_t*rus_d_Gamma_1_x + rus_d_Gamma_3_x*rus_w_3_t + rus_h_3_z*rus_w_3_t -
-            rus_d_Gamma_2_x*rus_w_2_t - rus_h_3_y*(inv_rus_v_1_t*rus_c_3 - rus_c_3*rus_w_2_t)
+        rus_d_c_in_axes3_xx = (
+        inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x + rus_d_Gamma_3_in_axes3_x*rus_w_3_t +
+            rus_h_3_in_spec3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
+            inv_rus_v_1_t_2*rus_e_1_in_axes3_y)
         )
-        rus_d_c_xy = (
-        inv_rus_v_1_t*rus_d_Gamma_2_y + rus_d_Gamma_3_y*rus_w_3_t - rus_d_phi_3_t -
-            rus_d_Gamma_2_y*rus_w_2_t
+        rus_d_c_in_axes3_xy = (
+        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y + rus_d_Gamma_3_in_axes3_y*rus_w_3_t -
+            rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x
         )
-        rus_d_c_xz = (
-        inv_rus_v_1_t*rus_d_Gamma_2_z + rus_d_Gamma_3_t_2*rus_w_3_t + rus_d_alpha_3_t_2*rus_h_3_y
-            - rus_d_Gamma_2_z*rus_w_2_t
+        rus_d_c_in_axes3_xz = (
+        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_Gamma_3_in_axes3_z*rus_w_3_t -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y
         )
-        rus_d_c_yz = rus_d_alpha_3_t*rus_h_3_y - inv_rus_platform_joint_offset_x*rus_d_Gamma_3_t_2
+        rus_d_c_in_axes3_yz = (
+        rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
+        )
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
-        rus_Q_t = rus_d_c_xx - rus_d_c_yy
-        rus_Q_t_2 = 0.5*rus_Q_t
-        rus_Q_t_3 = (
-        rus_d_c_xx + inv_rus_r_1_t*rus_d_Gamma_2_z + rus_d_alpha_3_t_2*rus_h_3_x -
-            rus_d_alpha_3_t*rus_h_3_z
+        rus_Q_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_Q_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy
+        axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy
+        axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy
+        rus_Q_t_3 = rus_e_1_in_axes3_x*rus_s_2
+        rus_Q_t_4 = rus_c_2*rus_e_1_in_axes3_x
+        rus_Q_t_5 = rus_Q_t_3*rus_c_1 + rus_Q_t_4*rus_s_1
+        rus_Q_t_6 = rus_Q_t_3*rus_s_1 - rus_Q_t_4*rus_c_1
+        axis_y_rus_axes3_x = (
+        rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy +
+            rus_base_frame_xz*rus_e_1_in_axes3_y
         )
-        rus_Q_t_4 = 0.5*rus_Q_t_3
-        rus_Q_t_5 = (
-        axis_x_rus_axes3_x*rus_d_c_xy + axis_z_rus_axes3_in_base_x*rus_d_c_yz -
-            axis_y_rus_axes3_in_base_x*rus_Q_t_2
+        axis_y_rus_axes3_y = (
+        rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy +
+            rus_base_frame_yz*rus_e_1_in_axes3_y
         )
-        rus_Q_t_6 = (
-        axis_x_rus_axes3_y*rus_d_c_xy + axis_z_rus_axes3_in_base_y*rus_d_c_yz -
-            axis_y_rus_axes3_in_base_y*rus_Q_t_2
+        axis_y_rus_axes3_z = (
+        rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy +
+            rus_base_frame_zz*rus_e_1_in_axes3_y
         )
-        rus_Q_t_7 = (
-        axis_x_rus_axes3_z*rus_d_c_xy + axis_z_rus_axes3_in_base_z*rus_d_c_yz -
-            axis_y_rus_axes3_in_base_z*rus_Q_t_2
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
         )
-        rus_Q_t_8 = axis_z_rus_axes3_in_base_x*rus_Q_t_4 - axis_x_rus_axes3_x*rus_d_c_xz
-        rus_Q_t_9 = axis_z_rus_axes3_in_base_y*rus_Q_t_4 - axis_x_rus_axes3_y*rus_d_c_xz
-        rus_Q_t_10 = axis_z_rus_axes3_in_base_z*rus_Q_t_4 - axis_x_rus_axes3_z*rus_d_c_xz
-        rus_Q_t_11 = axis_y_rus_axes3_in_base_x*rus_Q_t_5 - axis_z_rus_axes3_in_base_x*rus_Q_t_8
-        rus_Q_t_12 = 2.0*rus_Q_t_11 + rus_d_c_xx
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
+        rus_Q_t_7 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
+        rus_Q_t_8 = 0.5*rus_Q_t_7
+        rus_Q_t_9 = (
+        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
+            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
+            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x
+        )
+        rus_Q_t_10 = 0.5*rus_Q_t_9
+        rus_Q_t_11 = (
+        axis_x_rus_axes3_x*rus_d_c_in_axes3_xy + axis_z_rus_axes3_x*rus_d_c_in_axes3_yz -
+            axis_y_rus_axes3_x*rus_Q_t_8
+        )
+        rus_Q_t_12 = (
+        axis_x_rus_axes3_y*rus_d_c_in_axes3_xy + axis_z_rus_axes3_y*rus_d_c_in_axes3_yz -
+            axis_y_rus_axes3_y*rus_Q_t_8
+        )
         rus_Q_t_13 = (
-        axis_y_rus_axes3_in_base_x*rus_Q_t_6 + axis_y_rus_axes3_in_base_y*rus_Q_t_5 -
-            axis_z_rus_axes3_in_base_x*rus_Q_t_9 - axis_z_rus_axes3_in_base_y*rus_Q_t_8
+        axis_x_rus_axes3_z*rus_d_c_in_axes3_xy + axis_z_rus_axes3_z*rus_d_c_in_axes3_yz -
+            axis_y_rus_axes3_z*rus_Q_t_8
         )
-        rus_Q_t_14 = (
-        axis_y_rus_axes3_in_base_x*rus_Q_t_7 + axis_y_rus_axes3_in_base_z*rus_Q_t_5 -
-            axis_z_rus_axes3_in_base_x*rus_Q_t_10 - axis_z_rus_axes3_in_base_z*rus_Q_t_8
+        rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 - axis_x_rus_axes3_x*rus_d_c_in_axes3_xz
+        rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 - axis_x_rus_axes3_y*rus_d_c_in_axes3_xz
+        rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 - axis_x_rus_axes3_z*rus_d_c_in_axes3_xz
+        rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14
+        rus_Q_xx = -2.0*rus_Q_t_17 - rus_d_c_in_axes3_xx
+        rus_Q_xy = (
+        axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
+            axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11
         )
-        rus_Q_t_15 = axis_y_rus_axes3_in_base_y*rus_Q_t_6 - axis_z_rus_axes3_in_base_y*rus_Q_t_9
-        rus_Q_t_16 = 2.0*rus_Q_t_15 + rus_d_c_xx
-        rus_Q_t_17 = (
-        axis_y_rus_axes3_in_base_y*rus_Q_t_7 + axis_y_rus_axes3_in_base_z*rus_Q_t_6 -
-            axis_z_rus_axes3_in_base_y*rus_Q_t_10 - axis_z_rus_axes3_in_base_z*rus_Q_t_9
+        rus_Q_xz = (
+        axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
+            axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11
         )
-        rus_Q_t_18 = axis_y_rus_axes3_in_base_z*rus_Q_t_7 - axis_z_rus_axes3_in_base_z*rus_Q_t_10
-        rus_Q_t_19 = 2.0*rus_Q_t_18 + rus_d_c_xx
+        rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15
+        rus_Q_yy = -2.0*rus_Q_t_18 - rus_d_c_in_axes3_xx
+        rus_Q_yz = (
+        axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
+            axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12
+        )
+        rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16
+        rus_Q_zz = -2.0*rus_Q_t_19 - rus_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        rus_M_ta_t = rus_Q_t_13*rus_q_in_base_z
-        rus_M_ta_t_2 = rus_Q_t_14*rus_q_in_base_y
-        rus_M_ta_t_3 = rus_M_ta_t - rus_M_ta_t_2
-        rus_M_ta_t_4 = rus_Q_t_12*rus_q_in_base_z - rus_Q_t_14*rus_q_in_base_x
-        rus_M_ta_t_5 = rus_Q_t_12*rus_q_in_base_y - rus_Q_t_13*rus_q_in_base_x
-        rus_M_ta_t_6 = rus_Q_t_16*rus_q_in_base_z - rus_Q_t_17*rus_q_in_base_y
-        rus_M_ta_t_7 = rus_Q_t_17*rus_q_in_base_x
-        rus_M_ta_t_8 = rus_M_ta_t - rus_M_ta_t_7
-        rus_M_ta_t_9 = rus_Q_t_13*rus_q_in_base_y - rus_Q_t_16*rus_q_in_base_x
-        rus_M_ta_t_10 = rus_Q_t_17*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_y
-        rus_M_ta_t_11 = rus_Q_t_14*rus_q_in_base_z - rus_Q_t_19*rus_q_in_base_x
+        rus_M_ta_t = -rus_Q_xy*rus_q_z
+        rus_M_ta_t_2 = rus_Q_xz*rus_q_y
+        rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2
+        rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x
+        rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y
+        rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z
+        rus_M_ta_t_7 = rus_Q_yz*rus_q_x
+        rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7
+        rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y
+        rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z
+        rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x
         rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2
         # (M_aa) rotational block of M
-        rus_M_aa_t = rus_M_ta_t_6*rus_q_in_base_z - rus_M_ta_t_10*rus_q_in_base_y
-        rus_M_aa_t_2 = rus_M_ta_t_8*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_y
-        rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_in_base_y + rus_M_ta_t_9*rus_q_in_base_z
-        rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_in_base_z - rus_M_ta_t_11*rus_q_in_base_x
-        rus_M_aa_t_5 = rus_M_ta_t_12*rus_q_in_base_x + rus_M_ta_t_5*rus_q_in_base_z
-        rus_M_aa_t_6 = rus_M_ta_t_5*rus_q_in_base_y - rus_M_ta_t_9*rus_q_in_base_x
+        rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z
+        rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y + rus_M_ta_t_8*rus_q_z
+        rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z
+        rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x
+        rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x
+        rus_M_aa_t_6 = rus_M_ta_t_9*rus_q_x - rus_M_ta_t_5*rus_q_y
         ok = (
-        ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+        ok & m.every(leg, (abs(rus_J_3_t_12) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) &
+            (rus_J_3_t_13 >= 0.0) & (abs(rus_J_3_t_18) > _TOLERANCE * _TOLERANCE * rus_size_t_3) &
+            (abs(rus_r_1_t) > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
         )
         sums = m.added(sums, leg, (
-        rus_Q_t_12, rus_Q_t_13, rus_Q_t_14, rus_Q_t_16, rus_Q_t_17, rus_Q_t_19, rus_M_ta_t_3,
+        rus_Q_xx, rus_Q_xy, rus_Q_xz, rus_Q_yy, rus_Q_yz, rus_Q_zz, rus_M_ta_t_3,
             rus_M_ta_t_4, rus_M_ta_t_5, rus_M_ta_t_6, rus_M_ta_t_8, rus_M_ta_t_9,
             rus_M_ta_t_10, rus_M_ta_t_11, rus_M_ta_t_12, rus_M_aa_t, rus_M_aa_t_2,
             rus_M_aa_t_3, rus_M_aa_t_4, rus_M_aa_t_5, rus_M_aa_t_6,
         ))
     (
-    total_rus_xx, total_rus_xy, total_rus_xz, total_rus_yy, total_rus_yz, total_rus_zz,
-        total_rus_xx_2, total_rus_xy_2, total_rus_xz_2, total_rus_yx, total_rus_yy_2,
-        total_rus_yz_2, total_rus_zx, total_rus_zy, total_rus_zz_2, total_rus_xx_3,
-        total_rus_xy_3, total_rus_xz_3, total_rus_yy_3, total_rus_yz_3, total_rus_zz_3,
+    M_tt_rus_xx, M_tt_xy, M_tt_xz, M_tt_rus_yy, M_tt_yz, M_tt_rus_zz, M_ta_xx, M_ta_rus_xy,
+        M_ta_rus_xz, M_ta_rus_yx, M_ta_t, M_ta_rus_yz, M_ta_rus_zx, M_ta_rus_zy, M_ta_zz,
+        M_aa_rus_xx, M_aa_rus_xy, M_aa_rus_xz, M_aa_rus_yy, M_aa_rus_yz, M_aa_rus_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rus_xx
-    M_tt_yy = m_star - total_rus_yy
-    M_tt_zz = m_star - total_rus_zz
+    M_tt_xx = M_tt_rus_xx + m_star
+    M_tt_yy = M_tt_rus_yy + m_star
+    M_tt_zz = M_tt_rus_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rus_xy_2
-    M_ta_xz = total_rus_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rus_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rus_yz_2
-    M_ta_zx = h_star_in_base_y + total_rus_zx
-    M_ta_zy = -h_star_in_base_x - total_rus_zy
+    M_ta_xy = M_ta_rus_xy + h_star_z
+    M_ta_xz = M_ta_rus_xz - h_star_y
+    M_ta_yx = M_ta_rus_yx - h_star_z
+    M_ta_yz = M_ta_rus_yz + h_star_x
+    M_ta_zx = M_ta_rus_zx + h_star_y
+    M_ta_zy = M_ta_rus_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rus_xx_3
-    M_aa_xy = J_star_t_9 + total_rus_xy_3
-    M_aa_xz = J_star_t_10 - total_rus_xz_3
-    M_aa_yy = J_star_t_13 - total_rus_yy_3
-    M_aa_yz = J_star_t_15 + total_rus_yz_3
-    M_aa_zz = J_star_t_17 - total_rus_zz_3
+    M_aa_xx = J_star_xx + M_aa_rus_xx
+    M_aa_xy = J_star_xy + M_aa_rus_xy
+    M_aa_xz = J_star_xz + M_aa_rus_xz
+    M_aa_yy = J_star_yy + M_aa_rus_yy
+    M_aa_yz = J_star_yz + M_aa_rus_yz
+    M_aa_zz = J_star_zz + M_aa_rus_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rus_xy
-    out_M[6] = -total_rus_xy
-    out_M[2] = -total_rus_xz
-    out_M[12] = -total_rus_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rus_yz
-    out_M[13] = -total_rus_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_rus_xx_2
-    out_M[18] = total_rus_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rus_yy_2
-    out_M[25] = -total_rus_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_rus_zz_2
-    out_M[32] = -total_rus_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2371,8 +2419,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2425,71 +2474,90 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-            rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_Sigma_3_xx,
-            rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx, rus_base_frame_xy,
-            rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
-            rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
-            rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2, rus_g_r0_x,
-            rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x, rus_h_3_y, rus_h_3_z,
-            rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
+            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+            rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
+            rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
+            rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
+            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+            rus_branch_2, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y, rus_h_3_in_spec3_x,
+            rus_h_3_in_spec3_y, rus_h_3_in_spec3_z, rus_joint2_offset_x, rus_mu_1_t, rus_mu_1_t_2,
+            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
         # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -2498,265 +2566,273 @@ def _run_Z(m, X, V):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t_3 = rus_c_2*rus_r_1_t
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
-        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_r0_x
-        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
-        rus_v_1_z = (
-        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
-            rus_r_1_r0_y*rus_s_3)
-        )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
         )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
-        )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            rus_base_frame_xz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            rus_base_frame_yz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            rus_base_frame_zz*rus_c_3
-        )
-        axis_x_rus_axes3_x = (
-        axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y
-        )
-        axis_x_rus_axes3_y = (
-        axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z
-        )
-        axis_x_rus_axes3_z = (
-        axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
-        )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        # (rus-w_2) reciprocal vector 2
-        inv_rus_r_1_t = 1.0/rus_r_1_t
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
         # (rus-S_dot) velocity of the connection point
-        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
-        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
-        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
+        rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
+        rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x
         rus_S_dot_x = rus_S_dot_t + t_dot_x
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
-        # (rus-qd_3) rate of joint 3
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
+        rus_r_1_t_2 = rus_c_2*rus_r_1_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
+        rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3
+        rus_v_1_in_axes3_z = (
+        rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t)
+        )
+        # (rus-w_1) reciprocal vector 1
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
+        rus_qd_1_t_3 = rus_s_2*rus_s_3
+        rus_qd_1_t_4 = rus_c_2*rus_s_3
+        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
+        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 +
+            rus_base_frame_xz*rus_c_3
+        )
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 +
+            rus_base_frame_yz*rus_c_3
+        )
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 +
+            rus_base_frame_zz*rus_c_3
+        )
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
         rus_qd_1 = (
-        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
+        # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
-        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
-            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
+        axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3
         )
-        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
+        rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1
         # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_z = (
-        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1
+        rus_omega_2_in_axes2_z = (
+        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x +
+            axis_z_rus_axes3_y*rus_S_dot_y + axis_z_rus_axes3_z*rus_S_dot_z -
+            rus_qd_1*rus_v_1_in_axes3_z)
         )
-        rus_omega_2_t = rus_omega_2_z*rus_s_3
-        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
-        # (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3
-        rus_zeta_3_y = rus_omega_2_t*rus_qd_3
+        rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3
+        rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
+        rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
+        rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
         # (rus-u_1) centripetal acceleration of the connection point
         rus_u_1_x = omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
         rus_u_1_y = omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
         rus_u_1_z = omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
-        # (rus-W_3) centripetal tensor of link 3
-        rus_W_3_t = rus_omega_2_t*rus_omega_2_t
-        rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2
-        rus_W_3_t_3 = rus_qd_3*rus_qd_3
-        rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2
-        # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_t = rus_qd_1*rus_s_3
-        rus_omega_1_t_2 = rus_c_3*rus_qd_1
-        # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
-        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
-        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
-        rus_bias_x = (
-        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
-        )
-        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
-        rus_bias_z = (
-        rus_omega_2_t*rus_qd_3_t + rus_platform_joint_offset_x*rus_zeta_3_y -
-            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
-        )
-        # (rus-u_1) centripetal acceleration of the connection point
-        rus_u_1_tip_x = (
+        rus_u_1_in_axes3_x = (
         axis_x_rus_axes3_x*rus_u_1_x + axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z
         )
-        rus_u_1_tip_y = (
-        axis_y_rus_axes3_in_base_x*rus_u_1_x + axis_y_rus_axes3_in_base_y*rus_u_1_y +
-            axis_y_rus_axes3_in_base_z*rus_u_1_z
+        rus_u_1_in_axes3_y = (
+        axis_y_rus_axes3_x*rus_u_1_x + axis_y_rus_axes3_y*rus_u_1_y + axis_y_rus_axes3_z*rus_u_1_z
         )
-        rus_u_1_tip_z = (
-        axis_z_rus_axes3_in_base_x*rus_u_1_x + axis_z_rus_axes3_in_base_y*rus_u_1_y +
-            axis_z_rus_axes3_in_base_z*rus_u_1_z
+        rus_u_1_in_axes3_z = (
+        axis_z_rus_axes3_x*rus_u_1_x + axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z
+        )
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
+        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_2 = (
+        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y + rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3
+        )
+        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_in_axes3_x = (
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_qd_3*rus_qd_3_t
+        )
+        rus_bias_in_axes3_y = (
+        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        )
+        rus_bias_in_axes3_z = (
+        rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
         )
         # (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rus_rel_o_x = rus_u_1_tip_x - rus_bias_x
-        rus_rel_o_y = rus_u_1_tip_y - rus_bias_y
-        rus_rel_o_z = rus_u_1_tip_z - rus_bias_z
+        rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x
+        rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y
+        rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z
+        # (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rus_qdd_1_o_t = inv_rus_v_1_t_2*rus_rel_o_in_axes3_x
         # (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        rus_qdd_1_o = inv_rus_v_1_t*rus_rel_o_x
-        rus_qdd_3_o = inv_rus_platform_joint_offset_x*(rus_qdd_1_o*rus_v_1_t_2 - rus_rel_o_y)
+        rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_3 - rus_rel_o_in_axes3_y)
         # (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rus_alpha_2_o_z = inv_rus_r_1_t*(rus_rel_o_z + rus_qdd_1_o*rus_v_1_z) - rus_qdd_1_o
-        rus_alpha_2_o_t = rus_alpha_2_o_z*rus_s_3
-        rus_alpha_2_o_t_2 = rus_alpha_2_o_z*rus_c_3
+        rus_alpha_2_o_in_axes2_z = (
+        rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z + rus_qdd_1_o_t*rus_v_1_in_axes3_z) -
+            rus_qdd_1_o_t
+        )
+        rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_s_3
+        rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_c_3
         # (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        rus_alpha_3_o_x = rus_alpha_2_o_t - rus_zeta_3_x
-        rus_alpha_3_o_y = -rus_alpha_2_o_t_2 - rus_zeta_3_y
+        rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
+        rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
         # (rus-B_3_o) remainder of the acceleration tensor of link 3
-        rus_B_3_o_xy = rus_qdd_3_o - rus_W_3_xy
-        rus_B_3_o_yx = -rus_W_3_xy - rus_qdd_3_o
-        rus_B_3_o_zx = rus_zeta_3_y - rus_alpha_3_o_y
-        rus_B_3_o_zy = rus_alpha_3_o_x - rus_zeta_3_x
+        rus_B_3_o_in_axes3_xy = rus_W_3_in_axes3_xy - rus_qdd_3_o
+        rus_B_3_o_in_axes3_yx = rus_W_3_in_axes3_xy + rus_qdd_3_o
+        rus_B_3_o_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_o_in_axes3_y
+        rus_B_3_o_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_o_in_axes3_x
         # (rus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rus_acc_3_o_x = (
-        rus_u_1_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
+        rus_acc_3_o_in_axes3_x = (
+        rus_u_1_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
             axis_x_rus_axes3_z*gravity_z
         )
-        rus_acc_3_o_y = (
-        rus_u_1_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_o_in_axes3_y = (
+        rus_u_1_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
+            axis_y_rus_axes3_z*gravity_z
         )
-        rus_acc_3_o_z = (
-        rus_u_1_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_o_in_axes3_z = (
+        rus_u_1_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
+            axis_z_rus_axes3_z*gravity_z
         )
         # (rus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        rus_mu_3_o_x = (
-        rus_B_3_o_yx*rus_J_3_xy + rus_B_3_o_zx*rus_J_3_xz + rus_B_3_o_zy*rus_Sigma_3_yy +
-            rus_Sigma_3_zz*rus_alpha_2_o_t - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3) -
-            rus_acc_3_o_y*rus_h_3_y - rus_acc_3_o_z*rus_h_3_z
+        rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
+        rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
+        rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_o_in_axes3_x = (
+        rus_B_3_o_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_o_in_axes3_zx*rus_J_3_in_spec3_xz +
+            rus_B_3_o_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_o_t_2
+            - rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_z
         )
-        rus_mu_3_o_y = (
-        rus_B_3_o_xy*rus_J_3_yz + rus_acc_3_o_x*rus_h_3_y - rus_B_3_o_zx*rus_Sigma_3_xx -
-            rus_B_3_o_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t - rus_W_3_t_3) -
-            rus_Sigma_3_zz*rus_alpha_2_o_t_2 - rus_acc_3_o_z*rus_h_3_x
+        rus_mu_3_o_in_axes3_y = (
+        rus_B_3_o_in_axes3_xy*rus_J_3_in_spec3_yz +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_o_in_axes3_y +
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_y -
+            rus_B_3_o_in_axes3_zx*rus_Sigma_3_in_axes3_xx -
+            rus_B_3_o_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_o_t -
+            rus_mu_3_o_t_3) - rus_acc_3_o_in_axes3_z*rus_h_3_in_spec3_x
         )
-        rus_mu_3_o_z = (
-        rus_B_3_o_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_o_t + rus_J_3_yz*rus_alpha_2_o_t_2 +
-            rus_acc_3_o_x*rus_h_3_z + rus_acc_3_o_y*rus_h_3_x - rus_B_3_o_xy*rus_Sigma_3_yy -
-            rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2)
+        rus_mu_3_o_in_axes3_z = (
+        rus_B_3_o_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+            rus_J_3_in_spec3_xy*rus_alpha_2_o_in_axes3_x +
+            rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_x
+            - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
+            rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y
         )
-        rus_mu_3_o_r0_y = rus_mu_3_o_x*rus_s_3 - rus_c_3*rus_mu_3_o_y
+        rus_mu_3_o_in_axes1_z = rus_c_3*rus_mu_3_o_in_axes3_y + rus_mu_3_o_in_axes3_x*rus_s_3
         # (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_o_z = (
-        rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) - rus_J_1_zz*rus_qdd_1_o -
-            rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)
+        rus_mu_1_o_in_axes1_z = (
+        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
+            rus_J_1_in_spec1_zz*rus_qdd_1_o_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)
         )
         # (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rus_N_1_o_z = rus_mu_1_o_z + rus_mu_3_o_r0_y
+        rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rus_G_o_t = inv_rus_r_1_t*rus_mu_3_o_r0_y
-        rus_G_o_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_o_z
+        rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
+        rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rus_c_o_x = (
-        inv_rus_v_1_t*(rus_N_1_o_z + rus_G_o_t_2*rus_v_1_t_2 - rus_G_o_t*rus_v_1_z) +
-            rus_B_3_o_xy*rus_h_3_z + rus_alpha_2_o_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
-            rus_W_3_t_3)
+        rus_c_o_in_axes3_x = (
+        inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z + rus_G_o_in_axes3_y*rus_v_1_t_3 -
+            rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 + rus_mu_3_o_t_3) -
+            rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y
         )
-        rus_c_o_y = (
-        rus_alpha_2_o_t*rus_h_3_y - rus_G_o_t_2 - rus_B_3_o_yx*rus_h_3_x - rus_h_3_z*(rus_W_3_t +
-            rus_W_3_t_3)
+        rus_c_o_in_axes3_y = (
+        rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y - rus_G_o_in_axes3_y -
+            rus_B_3_o_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_o_t +
+            rus_mu_3_o_t_3)
         )
-        rus_c_o_z = (
-        rus_B_3_o_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_o_t -
-            rus_B_3_o_zx*rus_h_3_x
+        rus_c_o_in_axes3_z = (
+        rus_B_3_o_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_o_t +
+            rus_mu_3_o_t_2) - rus_G_o_in_axes3_z - rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x
         )
         # (rus-U) velocity and gravity terms of the leg force
-        rus_U_in_base_x = (
-        -axis_x_rus_axes3_x*rus_c_o_x - axis_y_rus_axes3_in_base_x*rus_c_o_y -
-            axis_z_rus_axes3_in_base_x*rus_c_o_z
+        rus_U_x = (
+        -axis_x_rus_axes3_x*rus_c_o_in_axes3_x - axis_y_rus_axes3_x*rus_c_o_in_axes3_y -
+            axis_z_rus_axes3_x*rus_c_o_in_axes3_z
         )
-        rus_U_in_base_y = (
-        -axis_x_rus_axes3_y*rus_c_o_x - axis_y_rus_axes3_in_base_y*rus_c_o_y -
-            axis_z_rus_axes3_in_base_y*rus_c_o_z
+        rus_U_y = (
+        -axis_x_rus_axes3_y*rus_c_o_in_axes3_x - axis_y_rus_axes3_y*rus_c_o_in_axes3_y -
+            axis_z_rus_axes3_y*rus_c_o_in_axes3_z
         )
-        rus_U_in_base_z = (
-        -axis_x_rus_axes3_z*rus_c_o_x - axis_y_rus_axes3_in_base_z*rus_c_o_y -
-            axis_z_rus_axes3_in_base_z*rus_c_o_z
+        rus_U_z = (
+        -axis_x_rus_axes3_z*rus_c_o_in_axes3_x - axis_y_rus_axes3_z*rus_c_o_in_axes3_y -
+            axis_z_rus_axes3_z*rus_c_o_in_axes3_z
         )
         # (Z_a) rotational part of Z
-        rus_Z_a_t = rus_U_in_base_z*rus_q_in_base_y - rus_U_in_base_y*rus_q_in_base_z
-        rus_Z_a_t_2 = rus_U_in_base_x*rus_q_in_base_z - rus_U_in_base_z*rus_q_in_base_x
-        rus_Z_a_t_3 = rus_U_in_base_y*rus_q_in_base_x - rus_U_in_base_x*rus_q_in_base_y
+        rus_Z_a_t = rus_U_z*rus_q_y - rus_U_y*rus_q_z
+        rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x
+        rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y
         ok = (
         ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
         )
         sums = m.added(sums, leg, (
-        rus_U_in_base_x, rus_U_in_base_y, rus_U_in_base_z, rus_Z_a_t, rus_Z_a_t_2,
-            rus_Z_a_t_3,
+        rus_U_x, rus_U_y, rus_U_z, rus_Z_a_t, rus_Z_a_t_2, rus_Z_a_t_3,
         ))
-    total_rus_x, total_rus_y, total_rus_z, total_rus_x_2, total_rus_y_2, total_rus_z_2 = sums
+    Z_t_rus_x, Z_t_rus_y, Z_t_rus_z, Z_a_rus_x, Z_a_rus_y, Z_a_rus_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rus_x
-    Z_t_y = Z_p_y + total_rus_y
-    Z_t_z = Z_p_z + total_rus_z
+    Z_t_x = Z_p_x + Z_t_rus_x
+    Z_t_y = Z_p_y + Z_t_rus_y
+    Z_t_z = Z_p_z + Z_t_rus_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rus_x_2
-    Z_a_y = Z_q_in_base_y + total_rus_y_2
-    Z_a_z = Z_q_in_base_z + total_rus_z_2
+    Z_a_x = Z_a_rus_x + Z_q_x
+    Z_a_y = Z_a_rus_y + Z_q_y
+    Z_a_z = Z_a_rus_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2806,39 +2882,39 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
             rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
             rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
             rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
         ) = k
         # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -2847,90 +2923,82 @@ def _run_H(m, X):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*(rus_c_2*rus_r_1_x - rus_c_2*rus_r_1_t*rus_s_2)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2)
         # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
+        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_s_2*rus_s_3
+        rus_w_1_t_4 = rus_c_2*rus_s_3
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3
         )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3
         )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            rus_base_frame_xz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            rus_base_frame_yz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            rus_base_frame_zz*rus_c_3
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3
         )
         inv_rus_v_1_t = 1.0/rus_v_1_t
-        rus_w_1_t_3 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y)
+        rus_w_1_t_7 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y)
         )
-        rus_w_1_t_4 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z)
+        rus_w_1_t_8 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z)
         )
-        rus_w_1_t_5 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x)
+        rus_w_1_t_9 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x)
         )
         # (rus-H_a_1) moment of the column's unit force about the platform origin
-        rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5
-        rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3
-        rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4
+        rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9
+        rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
+        rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
         ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size))
         )
-        out_H[_H_rus[0][leg]] = -rus_w_1_t_3
-        out_H[_H_rus[1][leg]] = -rus_w_1_t_4
-        out_H[_H_rus[2][leg]] = -rus_w_1_t_5
+        # (rus-w_1) reciprocal vector 1
+        out_H[_H_rus[0][leg]] = -rus_w_1_t_7
+        out_H[_H_rus[1][leg]] = -rus_w_1_t_8
+        out_H[_H_rus[2][leg]] = -rus_w_1_t_9
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rus[3][leg]] = rus_H_a_1_x
         out_H[_H_rus[4][leg]] = rus_H_a_1_y
         out_H[_H_rus[5][leg]] = rus_H_a_1_z
@@ -2942,8 +3010,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3009,103 +3078,117 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-            rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_Sigma_3_xx,
-            rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx, rus_base_frame_xy,
-            rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
-            rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
-            rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2, rus_g_r0_x,
-            rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x, rus_h_3_y, rus_h_3_z,
-            rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
+            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+            rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
+            rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
+            rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
+            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+            rus_branch_2, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y, rus_h_3_in_spec3_x,
+            rus_h_3_in_spec3_y, rus_h_3_in_spec3_z, rus_joint2_offset_x, rus_mu_1_t, rus_mu_1_t_2,
+            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3, rus_w_3_in_axes3_y,
         ) = k
         # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -3114,282 +3197,287 @@ def _run_required(m, X, V, A):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t_3 = rus_c_2*rus_r_1_t
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
-        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_r0_x
-        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
-        rus_v_1_z = (
-        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
-            rus_r_1_r0_y*rus_s_3)
-        )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
         )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
-        )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            rus_base_frame_xz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            rus_base_frame_yz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            rus_base_frame_zz*rus_c_3
-        )
-        axis_x_rus_axes3_x = (
-        axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y
-        )
-        axis_x_rus_axes3_y = (
-        axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z
-        )
-        axis_x_rus_axes3_z = (
-        axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
-        )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        # (rus-w_2) reciprocal vector 2
-        inv_rus_r_1_t = 1.0/rus_r_1_t
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
         # (rus-S_dot) velocity of the connection point
-        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
-        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
-        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
+        rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
+        rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x
         rus_S_dot_x = rus_S_dot_t + t_dot_x
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
-        # (rus-qd_3) rate of joint 3
-        rus_qd_1 = (
-        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
-            axis_x_rus_axes3_z*rus_S_dot_z)
-        )
-        rus_qd_3_t = (
-        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
-            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
-        )
-        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
-        # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_z = (
-        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1
-        )
-        rus_omega_2_t = rus_omega_2_z*rus_s_3
-        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
-        # (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3
-        rus_zeta_3_y = rus_omega_2_t*rus_qd_3
-        # (rus-W_3) centripetal tensor of link 3
-        rus_W_3_t = rus_omega_2_t*rus_omega_2_t
-        rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2
-        rus_W_3_t_3 = rus_qd_3*rus_qd_3
-        rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2
-        # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_t = rus_qd_1*rus_s_3
-        rus_omega_1_t_2 = rus_c_3*rus_qd_1
-        # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
-        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
-        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
-        rus_bias_x = (
-        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
-        )
-        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
-        rus_bias_z = (
-        rus_omega_2_t*rus_qd_3_t + rus_platform_joint_offset_x*rus_zeta_3_y -
-            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
+        rus_r_1_t_2 = rus_c_2*rus_r_1_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
+        rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3
+        rus_v_1_in_axes3_z = (
+        rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t)
         )
         # (rus-w_1) reciprocal vector 1
-        rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t
-        rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t
-        rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t
-        # (rus-H_a_1) moment of the column's unit force about the platform origin
-        rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5
-        rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3
-        rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4
+        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_s_2*rus_s_3
+        rus_w_1_t_4 = rus_c_2*rus_s_3
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3
+        )
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3
+        )
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3
+        )
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1 = (
+        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+            axis_x_rus_axes3_z*rus_S_dot_z)
+        )
+        # (rus-qd_3) rate of joint 3
+        rus_qd_3_t = (
+        axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3
+        )
+        rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1
+        # (rus-omega_2) angular velocity of link 2
+        rus_omega_2_in_axes2_z = (
+        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x +
+            axis_z_rus_axes3_y*rus_S_dot_y + axis_z_rus_axes3_z*rus_S_dot_z -
+            rus_qd_1*rus_v_1_in_axes3_z)
+        )
+        rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3
+        rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
+        rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
+        rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
         # (rus-a_p) acceleration of the connection point without its centripetal part
-        rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y
-        rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z
-        rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x
+        rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y
+        rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z
+        rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x
         # (rus-S_ddot) acceleration of the connection point
         rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
         rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
         rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
-        rus_S_ddot_tip_x = (
+        rus_S_ddot_in_axes3_x = (
         axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
             axis_x_rus_axes3_z*rus_S_ddot_z
         )
-        rus_S_ddot_tip_y = (
-        axis_y_rus_axes3_in_base_x*rus_S_ddot_x + axis_y_rus_axes3_in_base_y*rus_S_ddot_y +
-            axis_y_rus_axes3_in_base_z*rus_S_ddot_z
+        rus_S_ddot_in_axes3_y = (
+        axis_y_rus_axes3_x*rus_S_ddot_x + axis_y_rus_axes3_y*rus_S_ddot_y +
+            axis_y_rus_axes3_z*rus_S_ddot_z
         )
-        rus_S_ddot_tip_z = (
-        axis_z_rus_axes3_in_base_x*rus_S_ddot_x + axis_z_rus_axes3_in_base_y*rus_S_ddot_y +
-            axis_z_rus_axes3_in_base_z*rus_S_ddot_z
+        rus_S_ddot_in_axes3_z = (
+        axis_z_rus_axes3_x*rus_S_ddot_x + axis_z_rus_axes3_y*rus_S_ddot_y +
+            axis_z_rus_axes3_z*rus_S_ddot_z
+        )
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
+        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_2 = (
+        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y + rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3
+        )
+        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_in_axes3_x = (
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_qd_3*rus_qd_3_t
+        )
+        rus_bias_in_axes3_y = (
+        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        )
+        rus_bias_in_axes3_z = (
+        rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
-        rus_rel_x = rus_S_ddot_tip_x - rus_bias_x
-        rus_rel_y = rus_S_ddot_tip_y - rus_bias_y
-        rus_rel_z = rus_S_ddot_tip_z - rus_bias_z
+        rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
+        rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
+        rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1 = inv_rus_v_1_t*rus_rel_x
-        rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 - rus_rel_y)
+        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        # (rus-qdd_3) acceleration of joint 3
+        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
+        # (rus-alpha_2) angular acceleration of link 2
+        rus_alpha_2_in_axes2_z = (
+        rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t
+        )
+        rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3
+        rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3
+        # (rus-alpha_3) angular acceleration of link 3
+        rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
+        rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
+        # (rus-B_3) acceleration tensor of link 3
+        rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t
+        rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t
+        rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y
+        rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x
         # (rus-acc_3) acceleration of the reference point of link 3, less gravity
-        rus_acc_3_x = (
-        rus_S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
+        rus_acc_3_in_axes3_x = (
+        rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
             axis_x_rus_axes3_z*gravity_z
         )
-        rus_acc_3_y = (
-        rus_S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_in_axes3_y = (
+        rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
+            axis_y_rus_axes3_z*gravity_z
         )
-        rus_acc_3_z = (
-        rus_S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_in_axes3_z = (
+        rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
+            axis_z_rus_axes3_z*gravity_z
         )
-        # (rus-alpha_2) angular acceleration of link 2
-        rus_alpha_2_z = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z) - rus_qdd_1
-        rus_alpha_2_t = rus_alpha_2_z*rus_s_3
-        rus_alpha_2_t_2 = rus_alpha_2_z*rus_c_3
-        # (rus-alpha_3) angular acceleration of link 3
-        rus_alpha_3_x = rus_alpha_2_t - rus_zeta_3_x
-        rus_alpha_3_y = -rus_alpha_2_t_2 - rus_zeta_3_y
-        # (rus-B_3) acceleration tensor of link 3
-        rus_B_3_xy = rus_qdd_3 - rus_W_3_xy
-        rus_B_3_yx = -rus_W_3_xy - rus_qdd_3
-        rus_B_3_zx = rus_zeta_3_y - rus_alpha_3_y
-        rus_B_3_zy = rus_alpha_3_x - rus_zeta_3_x
         # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        rus_mu_3_x = (
-        rus_B_3_yx*rus_J_3_xy + rus_B_3_zx*rus_J_3_xz + rus_B_3_zy*rus_Sigma_3_yy +
-            rus_Sigma_3_zz*rus_alpha_2_t - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3) -
-            rus_acc_3_y*rus_h_3_y - rus_acc_3_z*rus_h_3_z
+        rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
+        rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
+        rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_in_axes3_x = (
+        rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz +
+            rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
         )
-        rus_mu_3_y = (
-        rus_B_3_xy*rus_J_3_yz + rus_acc_3_x*rus_h_3_y - rus_B_3_zx*rus_Sigma_3_xx -
-            rus_B_3_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t - rus_W_3_t_3) -
-            rus_Sigma_3_zz*rus_alpha_2_t_2 - rus_acc_3_z*rus_h_3_x
+        rus_mu_3_in_axes3_y = (
+        rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
+            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
         )
-        rus_mu_3_z = (
-        rus_B_3_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_t + rus_J_3_yz*rus_alpha_2_t_2 +
-            rus_acc_3_x*rus_h_3_z + rus_acc_3_y*rus_h_3_x - rus_B_3_xy*rus_Sigma_3_yy -
-            rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2)
+        rus_mu_3_in_axes3_z = (
+        rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx + rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x +
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x -
+            rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_t -
+            rus_mu_3_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_r0_y = rus_mu_3_x*rus_s_3 - rus_c_3*rus_mu_3_y
+        rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y + rus_mu_3_in_axes3_x*rus_s_3
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_z = (
-        rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) - rus_J_1_zz*rus_qdd_1 -
-            rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)
+        rus_mu_1_in_axes1_z = (
+        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
+            rus_J_1_in_spec1_zz*rus_qdd_1_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)
         )
         # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rus_N_1_z = rus_mu_1_z + rus_mu_3_r0_y
+        rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rus_G_t = inv_rus_r_1_t*rus_mu_3_r0_y
-        rus_G_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_z
+        rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z
+        rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c) leg force on the platform without actuation and without the mass at the connection point
+        rus_c_in_axes3_x = (
+        inv_rus_v_1_t_2*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_3 -
+            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3) -
+            rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
+        )
+        rus_c_in_axes3_y = (
+        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y -
+            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
+            rus_mu_3_t_3)
+        )
+        rus_c_in_axes3_z = (
+        rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) -
+            rus_G_in_axes3_z - rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
+        )
         rus_c_x = (
-        inv_rus_v_1_t*(rus_N_1_z + rus_G_t_2*rus_v_1_t_2 - rus_G_t*rus_v_1_z) +
-            rus_B_3_xy*rus_h_3_z + rus_alpha_2_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
-            rus_W_3_t_3)
+        axis_x_rus_axes3_x*rus_c_in_axes3_x + axis_y_rus_axes3_x*rus_c_in_axes3_y +
+            axis_z_rus_axes3_x*rus_c_in_axes3_z
         )
         rus_c_y = (
-        rus_alpha_2_t*rus_h_3_y - rus_G_t_2 - rus_B_3_yx*rus_h_3_x - rus_h_3_z*(rus_W_3_t +
-            rus_W_3_t_3)
+        axis_x_rus_axes3_y*rus_c_in_axes3_x + axis_y_rus_axes3_y*rus_c_in_axes3_y +
+            axis_z_rus_axes3_y*rus_c_in_axes3_z
         )
         rus_c_z = (
-        rus_B_3_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_t -
-            rus_B_3_zx*rus_h_3_x
-        )
-        rus_c_in_base_x = (
-        axis_x_rus_axes3_x*rus_c_x + axis_y_rus_axes3_in_base_x*rus_c_y +
-            axis_z_rus_axes3_in_base_x*rus_c_z
-        )
-        rus_c_in_base_y = (
-        axis_x_rus_axes3_y*rus_c_x + axis_y_rus_axes3_in_base_y*rus_c_y +
-            axis_z_rus_axes3_in_base_y*rus_c_z
-        )
-        rus_c_in_base_z = (
-        axis_x_rus_axes3_z*rus_c_x + axis_y_rus_axes3_in_base_z*rus_c_y +
-            axis_z_rus_axes3_in_base_z*rus_c_z
+        axis_x_rus_axes3_z*rus_c_in_axes3_x + axis_y_rus_axes3_z*rus_c_in_axes3_y +
+            axis_z_rus_axes3_z*rus_c_in_axes3_z
         )
         # (R_a) moment that actuators and external wrench must give
-        rus_R_a_t = rus_c_in_base_z*rus_q_in_base_y - rus_c_in_base_y*rus_q_in_base_z
-        rus_R_a_t_2 = rus_c_in_base_x*rus_q_in_base_z - rus_c_in_base_z*rus_q_in_base_x
-        rus_R_a_t_3 = rus_c_in_base_y*rus_q_in_base_x - rus_c_in_base_x*rus_q_in_base_y
+        rus_R_a_t = rus_c_y*rus_q_z - rus_c_z*rus_q_y
+        rus_R_a_t_2 = rus_c_z*rus_q_x - rus_c_x*rus_q_z
+        rus_R_a_t_3 = rus_c_x*rus_q_y - rus_c_y*rus_q_x
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
+        rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9
+        rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
+        rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         ok = (
         ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
         )
         sums = m.added(sums, leg, (
-        rus_c_in_base_x, rus_c_in_base_y, rus_c_in_base_z, rus_R_a_t, rus_R_a_t_2,
-            rus_R_a_t_3,
+        rus_c_x, rus_c_y, rus_c_z, rus_R_a_t, rus_R_a_t_2, rus_R_a_t_3,
         ))
-        out_H[_H_rus[0][leg]] = -rus_w_1_t_3
-        out_H[_H_rus[1][leg]] = -rus_w_1_t_4
-        out_H[_H_rus[2][leg]] = -rus_w_1_t_5
+        # (rus-w_1) reciprocal vector 1
+        out_H[_H_rus[0][leg]] = -rus_w_1_t_7
+        out_H[_H_rus[1][leg]] = -rus_w_1_t_8
+        out_H[_H_rus[2][leg]] = -rus_w_1_t_9
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rus[3][leg]] = rus_H_a_1_x
         out_H[_H_rus[4][leg]] = rus_H_a_1_y
         out_H[_H_rus[5][leg]] = rus_H_a_1_z
-    total_rus_x, total_rus_y, total_rus_z, total_rus_x_2, total_rus_y_2, total_rus_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_rus_x, R_a_rus_y, R_a_rus_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rus_x
-    R_t_y = f_p_y - total_rus_y
-    R_t_z = f_p_z - total_rus_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_rus_x_2
-    R_a_y = mu_p_in_base_y - total_rus_y_2
-    R_a_z = mu_p_in_base_z - total_rus_z_2
+    R_a_x = R_a_rus_x + mu_p_x
+    R_a_y = R_a_rus_y + mu_p_y
+    R_a_z = R_a_rus_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -3440,12 +3528,12 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
             rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
             rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
             rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
             rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
-            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size_t,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size_t_3,
         ) = k
         # (rus-S) from the base point to the connection point
         rus_S_x = (
@@ -3462,17 +3550,17 @@ def _run_inverse_kinematics(m, X):
         )
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -3481,41 +3569,42 @@ def _run_inverse_kinematics(m, X):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_rho2_1 = 1.0/rus_rho2_1
         # (rus-q_1) displacement of joint 1
+        inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_q_1 = (
         atan2(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
             inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1))
         )
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-q_2) displacement of joint 2
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
         rus_q_2 = (
-        atan2(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t, inv_rus_rho2_2*rus_root_2*rus_x_2_x)
+        atan2(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t, inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x)
         )
         # (rus-q_3) displacement of joint 3
         rus_q_3 = (
-        atan2(-inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2,
-            inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2)
+        atan2(-inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z,
+            inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2)
         )
         ok = (
         ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t))
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3))
         )
+        # (rus-q_1) displacement of joint 1
         out_q[_q_rus[0][leg]] = rus_q_1
+        # (rus-q_2) displacement of joint 2
         out_q[_q_rus[1][leg]] = rus_q_2
+        # (rus-q_3) displacement of joint 3
         out_q[_q_rus[2][leg]] = rus_q_3
     return ok, (out_q,)
 
@@ -3576,40 +3665,40 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_Kd_1_t_2,
-            rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
-            rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
-            rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-            rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
-            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
+            rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
+            rus_w_3_in_axes3_y,
         ) = k
         # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -3618,100 +3707,96 @@ def _run_joint_rates(m, X, V):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t_3 = rus_c_2*rus_r_1_t
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
-        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_r0_x
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
         )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
-        )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        # (rus-S_dot) velocity of the connection point
+        rus_S_dot_x = t_dot_x + omega_y*rus_q_z - omega_z*rus_q_y
+        rus_S_dot_y = t_dot_y + omega_z*rus_q_x - omega_x*rus_q_z
+        rus_S_dot_z = t_dot_z + omega_x*rus_q_y - omega_y*rus_q_x
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
+        rus_r_1_t_2 = rus_c_2*rus_r_1_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = -rus_c_3*rus_r_1_in_axes3_z
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
+        rus_qd_1_t_3 = rus_s_2*rus_s_3
+        rus_qd_1_t_4 = rus_c_2*rus_s_3
+        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
+        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 +
             rus_base_frame_xz*rus_c_3
         )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 +
             rus_base_frame_yz*rus_c_3
         )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 +
             rus_base_frame_zz*rus_c_3
         )
-        # (rus-S_dot) velocity of the connection point
-        rus_S_dot_x = t_dot_x + omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
-        rus_S_dot_y = t_dot_y + omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
-        rus_S_dot_z = t_dot_z + omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
-        # (rus-qd_3) rate of joint 3
         rus_qd_1 = (
-        (rus_S_dot_x*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y) +
-            rus_S_dot_y*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z) +
-            rus_S_dot_z*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x))/rus_v_1_t
+        -(rus_S_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
+            rus_S_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
+            rus_S_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t
         )
+        # (rus-qd_2) rate of joint 2
+        rus_qd_2_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
+        rus_qd_2_t_2 = (
+        axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
+            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*(rus_s_3*(rus_c_3*rus_r_1_in_axes1_z +
+            rus_qd_2_t*rus_s_3) - rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_qd_2_t))
+        )
+        rus_qd_2 = rus_qd_2_t_2/rus_r_1_t
+        # (rus-qd_3) rate of joint 3
         rus_qd_3 = (
-        inv_rus_platform_joint_offset_x*(axis_y_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_y_rus_axes3_in_base_y*rus_S_dot_y + axis_y_rus_axes3_in_base_z*rus_S_dot_z -
-            rus_qd_1*rus_r_1_r0_x*rus_s_3)
+        rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_r_1_in_axes3_z*rus_s_3)
         )
-        rus_qd_3_t = (
-        axis_z_rus_axes3_in_base_x*rus_S_dot_x + axis_z_rus_axes3_in_base_y*rus_S_dot_y +
-            axis_z_rus_axes3_in_base_z*rus_S_dot_z + rus_qd_1*(rus_c_3*(rus_r_1_t_2*rus_s_3 -
-            rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 - rus_r_1_r0_y*rus_s_3))
-        )
-        rus_qd_2 = rus_qd_3_t/rus_r_1_t
         ok = (
         ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size))
         )
-        out_qd[_qd_rus[0][leg]] = -rus_qd_1
+        # (rus-qd_1) rate of joint 1
+        out_qd[_qd_rus[0][leg]] = rus_qd_1
+        # (rus-qd_2) rate of joint 2
         out_qd[_qd_rus[1][leg]] = rus_qd_2
+        # (rus-qd_3) rate of joint 3
         out_qd[_qd_rus[2][leg]] = rus_qd_3
     return ok, (out_qd,)
 
@@ -3785,40 +3870,40 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_Kd_1_t_2,
-            rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
-            rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
-            rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
-            rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
-            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
+            rus_joint2_offset_x, rus_platform_joint_offset_x, rus_platform_point_x,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
+            rus_w_3_in_axes3_y,
         ) = k
         # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -3827,163 +3912,166 @@ def _run_joint_accelerations(m, X, V, A):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t_3 = rus_c_2*rus_r_1_t
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
-        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_r0_x
-        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
-        rus_v_1_z = (
-        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
-            rus_r_1_r0_y*rus_s_3)
-        )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
         )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
-        )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            rus_base_frame_xz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            rus_base_frame_yz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            rus_base_frame_zz*rus_c_3
-        )
-        axis_x_rus_axes3_x = (
-        axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y
-        )
-        axis_x_rus_axes3_y = (
-        axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z
-        )
-        axis_x_rus_axes3_z = (
-        axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
-        )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        # (rus-w_2) reciprocal vector 2
-        inv_rus_r_1_t = 1.0/rus_r_1_t
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
         # (rus-S_dot) velocity of the connection point
-        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
-        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
-        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
+        rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
+        rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x
         rus_S_dot_x = rus_S_dot_t + t_dot_x
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
-        # (rus-qd_3) rate of joint 3
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
+        rus_r_1_t_2 = rus_c_2*rus_r_1_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
+        rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3
+        rus_v_1_in_axes3_z = (
+        rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t)
+        )
+        # (rus-w_1) reciprocal vector 1
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
+        rus_qd_1_t_3 = rus_s_2*rus_s_3
+        rus_qd_1_t_4 = rus_c_2*rus_s_3
+        rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
+        rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 +
+            rus_base_frame_xz*rus_c_3
+        )
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 +
+            rus_base_frame_yz*rus_c_3
+        )
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 +
+            rus_base_frame_zz*rus_c_3
+        )
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
         rus_qd_1 = (
-        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
             axis_x_rus_axes3_z*rus_S_dot_z)
         )
+        # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
-        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
-            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
+        axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3
         )
-        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
-        # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_z = (
-        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1
-        )
-        rus_omega_2_t = rus_omega_2_z*rus_s_3
-        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
+        rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_t = rus_qd_1*rus_s_3
-        rus_omega_1_t_2 = rus_c_3*rus_qd_1
-        # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
-        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
-        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
-        rus_bias_x = (
-        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
+        rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1
+        # (rus-omega_2) angular velocity of link 2
+        rus_omega_2_in_axes2_z = (
+        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x +
+            axis_z_rus_axes3_y*rus_S_dot_y + axis_z_rus_axes3_z*rus_S_dot_z -
+            rus_qd_1*rus_v_1_in_axes3_z)
         )
-        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
-        rus_bias_z = (
-        rus_omega_2_t*rus_qd_3_t + rus_omega_2_t*rus_platform_joint_offset_x*rus_qd_3 -
-            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
-        )
+        rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3
+        rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z
         # (rus-a_p) acceleration of the connection point without its centripetal part
-        rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y
-        rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z
-        rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x
+        rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y
+        rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z
+        rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x
         # (rus-S_ddot) acceleration of the connection point
         rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
         rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
         rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
+        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_2 = (
+        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y + rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3
+        )
+        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_in_axes3_x = (
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_qd_3*rus_qd_3_t
+        )
+        rus_bias_in_axes3_y = (
+        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        )
+        rus_bias_in_axes3_z = (
+        rus_omega_2_in_axes3_x*rus_qd_3_t +
+            rus_omega_2_in_axes3_x*rus_platform_joint_offset_x*rus_qd_3 -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
+        )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
-        rus_rel_x = (
+        rus_rel_in_axes3_x = (
         axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
-            axis_x_rus_axes3_z*rus_S_ddot_z - rus_bias_x
+            axis_x_rus_axes3_z*rus_S_ddot_z - rus_bias_in_axes3_x
         )
-        rus_rel_y = (
-        axis_y_rus_axes3_in_base_x*rus_S_ddot_x + axis_y_rus_axes3_in_base_y*rus_S_ddot_y +
-            axis_y_rus_axes3_in_base_z*rus_S_ddot_z - rus_bias_y
+        rus_rel_in_axes3_y = (
+        axis_y_rus_axes3_x*rus_S_ddot_x + axis_y_rus_axes3_y*rus_S_ddot_y +
+            axis_y_rus_axes3_z*rus_S_ddot_z - rus_bias_in_axes3_y
         )
-        rus_rel_z = (
-        axis_z_rus_axes3_in_base_x*rus_S_ddot_x + axis_z_rus_axes3_in_base_y*rus_S_ddot_y +
-            axis_z_rus_axes3_in_base_z*rus_S_ddot_z - rus_bias_z
+        rus_rel_in_axes3_z = (
+        axis_z_rus_axes3_x*rus_S_ddot_x + axis_z_rus_axes3_y*rus_S_ddot_y +
+            axis_z_rus_axes3_z*rus_S_ddot_z - rus_bias_in_axes3_z
         )
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1 = inv_rus_v_1_t*rus_rel_x
-        rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 - rus_rel_y)
-        rus_qdd_2 = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z)
+        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        # (rus-qdd_2) acceleration of joint 2
+        rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z)
+        # (rus-qdd_3) acceleration of joint 3
+        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
         ok = (
         ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
         )
-        out_qdd[_qdd_rus[0][leg]] = -rus_qdd_1
+        # (rus-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_rus[0][leg]] = -rus_qdd_1_t
+        # (rus-qdd_2) acceleration of joint 2
         out_qdd[_qdd_rus[1][leg]] = rus_qdd_2
-        out_qdd[_qdd_rus[2][leg]] = -rus_qdd_3
+        # (rus-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_rus[2][leg]] = -rus_qdd_3_t
     return ok, (out_qdd,)
 
 
@@ -4058,43 +4146,44 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_platform_joint_offset_x, rus_J_1_zz,
-            rus_J_3_xy, rus_J_3_xz, rus_J_3_yz, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_Sigma_3_xx,
-            rus_Sigma_3_yy, rus_Sigma_3_zz, rus_base_frame_xx, rus_base_frame_xy,
-            rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz,
-            rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x,
-            rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2, rus_g_r0_x,
-            rus_g_r0_y, rus_h_1_x, rus_h_1_y, rus_h_3_x, rus_h_3_y, rus_h_3_z,
-            rus_joint2_offset_x, rus_link3_mass, rus_platform_joint_offset_x,
-            rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t,
-            rus_size, rus_size_t,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_1_in_spec1_zz, rus_J_3_in_spec3_xy,
+            rus_J_3_in_spec3_xz, rus_J_3_in_spec3_yz, rus_J_3_t, rus_J_3_t_2,
+            rus_Sigma_3_in_axes3_xx, rus_Sigma_3_in_axes3_yy, rus_Sigma_3_in_axes3_zz,
+            rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
+            rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
+            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
+            rus_branch_2, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y, rus_h_3_in_spec3_x,
+            rus_h_3_in_spec3_y, rus_h_3_in_spec3_z, rus_joint2_offset_x, rus_link3_mass,
+            rus_mu_1_t, rus_mu_1_t_2, rus_platform_joint_offset_x, rus_platform_point_x,
+            rus_platform_point_y, rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
+            rus_w_3_in_axes3_y,
         ) = k
         # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -4103,262 +4192,266 @@ def _run_legs(m, X, V, A):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_platform_joint_offset_x*rus_s_3
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t_3 = rus_c_2*rus_r_1_t
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_r0_x = rus_c_2*rus_r_1_x - rus_r_1_t_3*rus_s_2
-        rus_r_1_r0_y = -rus_c_2*rus_r_1_t_3 - rus_r_1_x*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*rus_r_1_r0_x
-        rus_v_1_t_2 = rus_r_1_r0_x*rus_s_3
-        rus_v_1_z = (
-        rus_c_3*(rus_r_1_t_2*rus_s_3 - rus_c_3*rus_r_1_r0_y) + rus_s_3*(-rus_c_3*rus_r_1_t_2 -
-            rus_r_1_r0_y*rus_s_3)
-        )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
         )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
-        )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            rus_base_frame_xz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            rus_base_frame_yz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            rus_base_frame_zz*rus_c_3
-        )
-        axis_x_rus_axes3_x = (
-        axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y
-        )
-        axis_x_rus_axes3_y = (
-        axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z
-        )
-        axis_x_rus_axes3_z = (
-        axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
-        )
-        inv_rus_v_1_t = 1.0/rus_v_1_t
-        # (rus-w_2) reciprocal vector 2
-        inv_rus_r_1_t = 1.0/rus_r_1_t
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
         # (rus-S_dot) velocity of the connection point
-        rus_S_dot_t = omega_y*rus_q_in_base_z - omega_z*rus_q_in_base_y
-        rus_S_dot_t_2 = omega_z*rus_q_in_base_x - omega_x*rus_q_in_base_z
-        rus_S_dot_t_3 = omega_x*rus_q_in_base_y - omega_y*rus_q_in_base_x
+        rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y
+        rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z
+        rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x
         rus_S_dot_x = rus_S_dot_t + t_dot_x
         rus_S_dot_y = rus_S_dot_t_2 + t_dot_y
         rus_S_dot_z = rus_S_dot_t_3 + t_dot_z
-        # (rus-qd_3) rate of joint 3
-        rus_qd_1 = (
-        inv_rus_v_1_t*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
-            axis_x_rus_axes3_z*rus_S_dot_z)
-        )
-        rus_qd_3_t = (
-        axis_y_rus_axes3_in_base_x*rus_S_dot_x + axis_y_rus_axes3_in_base_y*rus_S_dot_y +
-            axis_y_rus_axes3_in_base_z*rus_S_dot_z - rus_qd_1*rus_v_1_t_2
-        )
-        rus_qd_3 = inv_rus_platform_joint_offset_x*rus_qd_3_t
-        # (rus-omega_2) angular velocity of link 2
-        rus_omega_2_z = (
-        inv_rus_r_1_t*(axis_z_rus_axes3_in_base_x*rus_S_dot_x +
-            axis_z_rus_axes3_in_base_y*rus_S_dot_y + axis_z_rus_axes3_in_base_z*rus_S_dot_z +
-            rus_qd_1*rus_v_1_z) - rus_qd_1
-        )
-        rus_omega_2_t = rus_omega_2_z*rus_s_3
-        rus_omega_2_t_2 = rus_c_3*rus_omega_2_z
-        # (rus-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rus_zeta_3_x = rus_omega_2_t_2*rus_qd_3
-        rus_zeta_3_y = rus_omega_2_t*rus_qd_3
-        # (rus-W_3) centripetal tensor of link 3
-        rus_W_3_t = rus_omega_2_t*rus_omega_2_t
-        rus_W_3_t_2 = rus_omega_2_t_2*rus_omega_2_t_2
-        rus_W_3_t_3 = rus_qd_3*rus_qd_3
-        rus_W_3_xy = rus_omega_2_t*rus_omega_2_t_2
-        # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_t = rus_qd_1*rus_s_3
-        rus_omega_1_t_2 = rus_c_3*rus_qd_1
-        # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_bias_t = rus_c_2*rus_joint2_offset_x
-        rus_bias_t_2 = rus_joint2_offset_x*rus_s_2
-        rus_bias_t_3 = rus_bias_t_2*rus_c_3*rus_omega_1_t_2 + rus_bias_t_2*rus_omega_1_t*rus_s_3
-        rus_bias_t_4 = rus_omega_2_t_2*rus_platform_joint_offset_x
-        rus_bias_x = (
-        -rus_bias_t_3*rus_omega_1_t_2 - rus_bias_t_4*rus_omega_2_t_2 - rus_qd_3*rus_qd_3_t
-        )
-        rus_bias_y = -rus_bias_t_3*rus_omega_1_t - rus_bias_t_4*rus_omega_2_t
-        rus_bias_z = (
-        rus_omega_2_t*rus_qd_3_t + rus_platform_joint_offset_x*rus_zeta_3_y -
-            rus_bias_t*rus_omega_1_t*rus_omega_1_t - rus_bias_t*rus_omega_1_t_2*rus_omega_1_t_2
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
+        rus_r_1_t_2 = rus_c_2*rus_r_1_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
+        rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3
+        rus_v_1_in_axes3_z = (
+        rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
+            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t)
         )
         # (rus-w_1) reciprocal vector 1
-        rus_w_1_t_3 = axis_x_rus_axes3_x*inv_rus_v_1_t
-        rus_w_1_t_4 = axis_x_rus_axes3_y*inv_rus_v_1_t
-        rus_w_1_t_5 = axis_x_rus_axes3_z*inv_rus_v_1_t
+        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_s_2*rus_s_3
+        rus_w_1_t_4 = rus_c_2*rus_s_3
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3
+        )
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3
+        )
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3
+        )
+        axis_x_rus_axes3_x = (
+        axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
+        )
+        axis_x_rus_axes3_y = (
+        axis_y_rus_axes3_z*axis_z_rus_axes3_x - axis_y_rus_axes3_x*axis_z_rus_axes3_z
+        )
+        axis_x_rus_axes3_z = (
+        axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
+        )
+        inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
+        rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2
+        rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2
+        rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2
+        # (rus-w_2) reciprocal vector 2
+        rus_w_2_in_axes3_z = 1.0/rus_r_1_t
+        # (rus-qd_1) rate of joint 1
+        rus_qd_1 = (
+        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x + axis_x_rus_axes3_y*rus_S_dot_y +
+            axis_x_rus_axes3_z*rus_S_dot_z)
+        )
+        # (rus-qd_3) rate of joint 3
+        rus_qd_3_t = (
+        axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
+            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3
+        )
+        rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
+        # (rus-omega_1) angular velocity of link 1
+        rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1
+        # (rus-omega_2) angular velocity of link 2
+        rus_omega_2_in_axes2_z = (
+        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x +
+            axis_z_rus_axes3_y*rus_S_dot_y + axis_z_rus_axes3_z*rus_S_dot_z -
+            rus_qd_1*rus_v_1_in_axes3_z)
+        )
+        rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3
+        rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z
+        # (rus-W_3) centripetal tensor of link 3
+        rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
+        rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
+        rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
         # (rus-a_p) acceleration of the connection point without its centripetal part
-        rus_a_p_x = t_ddot_x + alpha_y*rus_q_in_base_z - alpha_z*rus_q_in_base_y
-        rus_a_p_y = t_ddot_y + alpha_z*rus_q_in_base_x - alpha_x*rus_q_in_base_z
-        rus_a_p_z = t_ddot_z + alpha_x*rus_q_in_base_y - alpha_y*rus_q_in_base_x
+        rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y
+        rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z
+        rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x
         # (rus-S_ddot) acceleration of the connection point
         rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2
         rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3
         rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t
-        rus_S_ddot_tip_x = (
+        rus_S_ddot_in_axes3_x = (
         axis_x_rus_axes3_x*rus_S_ddot_x + axis_x_rus_axes3_y*rus_S_ddot_y +
             axis_x_rus_axes3_z*rus_S_ddot_z
         )
-        rus_S_ddot_tip_y = (
-        axis_y_rus_axes3_in_base_x*rus_S_ddot_x + axis_y_rus_axes3_in_base_y*rus_S_ddot_y +
-            axis_y_rus_axes3_in_base_z*rus_S_ddot_z
+        rus_S_ddot_in_axes3_y = (
+        axis_y_rus_axes3_x*rus_S_ddot_x + axis_y_rus_axes3_y*rus_S_ddot_y +
+            axis_y_rus_axes3_z*rus_S_ddot_z
         )
-        rus_S_ddot_tip_z = (
-        axis_z_rus_axes3_in_base_x*rus_S_ddot_x + axis_z_rus_axes3_in_base_y*rus_S_ddot_y +
-            axis_z_rus_axes3_in_base_z*rus_S_ddot_z
+        rus_S_ddot_in_axes3_z = (
+        axis_z_rus_axes3_x*rus_S_ddot_x + axis_z_rus_axes3_y*rus_S_ddot_y +
+            axis_z_rus_axes3_z*rus_S_ddot_z
+        )
+        # (rus-bias) acceleration of the connection point at zero joint accelerations
+        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
+        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t_2 = (
+        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y + rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3
+        )
+        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_in_axes3_x = (
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_qd_3*rus_qd_3_t
+        )
+        rus_bias_in_axes3_y = (
+        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        )
+        rus_bias_in_axes3_z = (
+        rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y
         )
         # (rus-rel) acceleration of the connection point left to the joint accelerations
-        rus_rel_x = rus_S_ddot_tip_x - rus_bias_x
-        rus_rel_y = rus_S_ddot_tip_y - rus_bias_y
-        rus_rel_z = rus_S_ddot_tip_z - rus_bias_z
+        rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x
+        rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y
+        rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z
         # (rus-qdd_1) acceleration of joint 1
-        rus_qdd_1 = inv_rus_v_1_t*rus_rel_x
-        rus_qdd_3 = inv_rus_platform_joint_offset_x*(rus_qdd_1*rus_v_1_t_2 - rus_rel_y)
+        rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x
+        # (rus-qdd_3) acceleration of joint 3
+        rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 - rus_rel_in_axes3_y)
+        # (rus-alpha_2) angular acceleration of link 2
+        rus_alpha_2_in_axes2_z = (
+        rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t
+        )
+        rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3
+        rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3
+        # (rus-alpha_3) angular acceleration of link 3
+        rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
+        rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
+        # (rus-B_3) acceleration tensor of link 3
+        rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t
+        rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t
+        rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y
+        rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x
         # (rus-acc_3) acceleration of the reference point of link 3, less gravity
-        rus_acc_3_x = (
-        rus_S_ddot_tip_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
+        rus_acc_3_in_axes3_x = (
+        rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x - axis_x_rus_axes3_y*gravity_y -
             axis_x_rus_axes3_z*gravity_z
         )
-        rus_acc_3_y = (
-        rus_S_ddot_tip_y - axis_y_rus_axes3_in_base_x*gravity_x -
-            axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_in_axes3_y = (
+        rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x - axis_y_rus_axes3_y*gravity_y -
+            axis_y_rus_axes3_z*gravity_z
         )
-        rus_acc_3_z = (
-        rus_S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
-            axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z
+        rus_acc_3_in_axes3_z = (
+        rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x - axis_z_rus_axes3_y*gravity_y -
+            axis_z_rus_axes3_z*gravity_z
         )
-        # (rus-alpha_2) angular acceleration of link 2
-        rus_alpha_2_z = inv_rus_r_1_t*(rus_rel_z + rus_qdd_1*rus_v_1_z) - rus_qdd_1
-        rus_alpha_2_t = rus_alpha_2_z*rus_s_3
-        rus_alpha_2_t_2 = rus_alpha_2_z*rus_c_3
-        # (rus-alpha_3) angular acceleration of link 3
-        rus_alpha_3_x = rus_alpha_2_t - rus_zeta_3_x
-        rus_alpha_3_y = -rus_alpha_2_t_2 - rus_zeta_3_y
-        # (rus-B_3) acceleration tensor of link 3
-        rus_B_3_xy = rus_qdd_3 - rus_W_3_xy
-        rus_B_3_yx = -rus_W_3_xy - rus_qdd_3
-        rus_B_3_zx = rus_zeta_3_y - rus_alpha_3_y
-        rus_B_3_zy = rus_alpha_3_x - rus_zeta_3_x
         # (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        rus_mu_3_x = (
-        rus_B_3_yx*rus_J_3_xy + rus_B_3_zx*rus_J_3_xz + rus_B_3_zy*rus_Sigma_3_yy +
-            rus_Sigma_3_zz*rus_alpha_2_t - rus_J_3_yz*(rus_W_3_t_2 - rus_W_3_t_3) -
-            rus_acc_3_y*rus_h_3_y - rus_acc_3_z*rus_h_3_z
+        rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x
+        rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y
+        rus_mu_3_t_3 = rus_qd_3*rus_qd_3
+        rus_mu_3_in_axes3_x = (
+        rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy + rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz +
+            rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy +
+            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
+            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z
         )
-        rus_mu_3_y = (
-        rus_B_3_xy*rus_J_3_yz + rus_acc_3_x*rus_h_3_y - rus_B_3_zx*rus_Sigma_3_xx -
-            rus_B_3_zy*rus_J_3_xz - rus_J_3_xy*(rus_W_3_t - rus_W_3_t_3) -
-            rus_Sigma_3_zz*rus_alpha_2_t_2 - rus_acc_3_z*rus_h_3_x
+        rus_mu_3_in_axes3_y = (
+        rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
+            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
+            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x
         )
-        rus_mu_3_z = (
-        rus_B_3_yx*rus_Sigma_3_xx + rus_J_3_xy*rus_alpha_2_t + rus_J_3_yz*rus_alpha_2_t_2 +
-            rus_acc_3_x*rus_h_3_z + rus_acc_3_y*rus_h_3_x - rus_B_3_xy*rus_Sigma_3_yy -
-            rus_J_3_xz*(rus_W_3_t - rus_W_3_t_2)
+        rus_mu_3_in_axes3_z = (
+        rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx + rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x +
+            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x -
+            rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_t -
+            rus_mu_3_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_r0_y = rus_mu_3_x*rus_s_3 - rus_c_3*rus_mu_3_y
+        rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y + rus_mu_3_in_axes3_x*rus_s_3
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rus_mu_1_z = (
-        rus_h_1_y*(rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1) - rus_J_1_zz*rus_qdd_1 -
-            rus_h_1_x*(rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)
+        rus_mu_1_in_axes1_z = (
+        rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
+            rus_J_1_in_spec1_zz*rus_qdd_1_t - rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)
         )
         # (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rus_N_1_z = rus_mu_1_z + rus_mu_3_r0_y
+        rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z
         # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rus_G_t = inv_rus_r_1_t*rus_mu_3_r0_y
-        rus_G_t_2 = inv_rus_platform_joint_offset_x*rus_mu_3_z
+        rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z
+        rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y
         # (rus-c) leg force on the platform without actuation and without the mass at the connection point
-        rus_c_x = (
-        inv_rus_v_1_t*(rus_N_1_z + rus_G_t_2*rus_v_1_t_2 - rus_G_t*rus_v_1_z) +
-            rus_B_3_xy*rus_h_3_z + rus_alpha_2_t_2*rus_h_3_y + rus_h_3_x*(rus_W_3_t_2 +
-            rus_W_3_t_3)
+        rus_c_in_axes3_x = (
+        inv_rus_v_1_t_2*(rus_N_1_in_axes1_z + rus_G_in_axes3_y*rus_v_1_t_3 -
+            rus_G_in_axes3_z*rus_v_1_in_axes3_z) + rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z +
+            rus_h_3_in_spec3_x*(rus_mu_3_t_2 + rus_mu_3_t_3) -
+            rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y
         )
-        rus_c_y = (
-        rus_alpha_2_t*rus_h_3_y - rus_G_t_2 - rus_B_3_yx*rus_h_3_x - rus_h_3_z*(rus_W_3_t +
-            rus_W_3_t_3)
+        rus_c_in_axes3_y = (
+        rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y -
+            rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
+            rus_mu_3_t_3)
         )
-        rus_c_z = (
-        rus_B_3_zy*rus_h_3_z + rus_h_3_y*(rus_W_3_t + rus_W_3_t_2) - rus_G_t -
-            rus_B_3_zx*rus_h_3_x
+        rus_c_in_axes3_z = (
+        rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) -
+            rus_G_in_axes3_z - rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x
         )
         # (rus-c_true) leg force on the platform without actuation, the last link's mass included
-        rus_c_true_x = rus_c_x - rus_acc_3_x*rus_link3_mass
-        rus_c_true_y = rus_c_y - rus_acc_3_y*rus_link3_mass
-        rus_c_true_z = rus_c_z - rus_acc_3_z*rus_link3_mass
-        rus_c_true_in_base_x = (
-        axis_x_rus_axes3_x*rus_c_true_x + axis_y_rus_axes3_in_base_x*rus_c_true_y +
-            axis_z_rus_axes3_in_base_x*rus_c_true_z
+        rus_c_true_in_axes3_x = rus_c_in_axes3_x - rus_acc_3_in_axes3_x*rus_link3_mass
+        rus_c_true_in_axes3_y = rus_c_in_axes3_y - rus_acc_3_in_axes3_y*rus_link3_mass
+        rus_c_true_in_axes3_z = rus_c_in_axes3_z - rus_acc_3_in_axes3_z*rus_link3_mass
+        rus_c_true_x = (
+        axis_x_rus_axes3_x*rus_c_true_in_axes3_x + axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
+            axis_z_rus_axes3_x*rus_c_true_in_axes3_z
         )
-        rus_c_true_in_base_y = (
-        axis_x_rus_axes3_y*rus_c_true_x + axis_y_rus_axes3_in_base_y*rus_c_true_y +
-            axis_z_rus_axes3_in_base_y*rus_c_true_z
+        rus_c_true_y = (
+        axis_x_rus_axes3_y*rus_c_true_in_axes3_x + axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
+            axis_z_rus_axes3_y*rus_c_true_in_axes3_z
         )
-        rus_c_true_in_base_z = (
-        axis_x_rus_axes3_z*rus_c_true_x + axis_y_rus_axes3_in_base_z*rus_c_true_y +
-            axis_z_rus_axes3_in_base_z*rus_c_true_z
+        rus_c_true_z = (
+        axis_x_rus_axes3_z*rus_c_true_in_axes3_x + axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
+            axis_z_rus_axes3_z*rus_c_true_in_axes3_z
         )
         ok = (
         ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t)
+            > _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size))
         )
-        out_leg_force[_leg_force_rus[0][leg]] = rus_c_true_in_base_x
-        out_leg_force[_leg_force_rus[1][leg]] = rus_c_true_in_base_y
-        out_leg_force[_leg_force_rus[2][leg]] = rus_c_true_in_base_z
-        out_drive[_drive_rus[0][leg]] = -rus_w_1_t_3
-        out_drive[_drive_rus[1][leg]] = -rus_w_1_t_4
-        out_drive[_drive_rus[2][leg]] = -rus_w_1_t_5
+        # (rus-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rus[0][leg]] = rus_c_true_x
+        out_leg_force[_leg_force_rus[1][leg]] = rus_c_true_y
+        out_leg_force[_leg_force_rus[2][leg]] = rus_c_true_z
+        # (rus-w_1) reciprocal vector 1
+        out_drive[_drive_rus[0][leg]] = -rus_w_1_t_7
+        out_drive[_drive_rus[1][leg]] = -rus_w_1_t_8
+        out_drive[_drive_rus[2][leg]] = -rus_w_1_t_9
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4366,7 +4459,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4406,21 +4502,23 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, rus_Kd_1_t_2, rus_Kd_1_t_4, rus_b_r0_x, rus_b_r0_y,
-            rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx,
-            rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy,
-            rus_base_frame_zz, rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1,
-            rus_branch_2, rus_g_r0_x, rus_g_r0_y, rus_g_r0_z, rus_h_1_x, rus_h_1_y, rus_h_1_z,
-            rus_h_3_x, rus_h_3_y, rus_h_3_z, rus_joint2_offset_x, rus_link1_mass,
-            rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, rus_potential_t, rus_rho2_1_t, rus_size_t,
+        inv_rus_size_t, inv_rus_size_t_2, rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx,
+            rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
+            rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
+            rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_branch_1, rus_branch_2,
+            rus_g_in_axes1_z, rus_h_1_in_spec1_x, rus_h_1_in_spec1_y, rus_h_1_in_spec1_z,
+            rus_h_3_in_spec3_x, rus_h_3_in_spec3_y, rus_h_3_in_spec3_z, rus_joint2_offset_x,
+            rus_link1_mass, rus_mu_1_t, rus_mu_1_t_2, rus_platform_joint_offset_x,
+            rus_platform_point_x, rus_platform_point_y, rus_platform_point_z, rus_potential_t,
+            rus_potential_t_2, rus_potential_t_3, rus_rho2_1_t, rus_size_t_3,
         ) = k
         # (rus-S) from the base point to the connection point
         rus_S_x = (
@@ -4437,17 +4535,17 @@ def _run_potential(m, X):
         )
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -4456,51 +4554,54 @@ def _run_potential(m, X):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
-        # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rus_d_Gamma_2_t = rus_h_3_z*rus_s_3 - rus_c_3*rus_h_3_x
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
         # (potential) potential energy
-        rus_potential_t_2 = (
-        rus_g_r0_z*(rus_h_1_z + rus_potential_t + rus_c_3*rus_h_3_z + rus_h_3_x*rus_s_3) +
-            (rus_c_1*rus_g_r0_x + rus_g_r0_y*rus_s_1)*(rus_h_1_x + rus_c_2*rus_h_3_y +
-            rus_link1_mass*(rus_b_r0_x*rus_c_1 + rus_b_r0_y*rus_s_1) - rus_d_Gamma_2_t*rus_s_2) +
-            (rus_c_1*rus_g_r0_y - rus_g_r0_x*rus_s_1)*(rus_h_1_y + rus_c_2*rus_d_Gamma_2_t +
-            rus_h_3_y*rus_s_2 + rus_link1_mass*(rus_b_r0_y*rus_c_1 - rus_b_r0_x*rus_s_1))
+        rus_potential_t_4 = rus_c_3*rus_h_3_in_spec3_x + rus_h_3_in_spec3_z*rus_s_3
+        rus_potential_t_5 = (
+        rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 + rus_h_3_in_spec3_x*rus_s_3 -
+            rus_c_3*rus_h_3_in_spec3_z) + (rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_c_2*rus_h_3_in_spec3_y +
+            rus_link1_mass*(rus_c_1*rus_potential_t + rus_potential_t_2*rus_s_1) -
+            rus_potential_t_4*rus_s_2) + (rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_potential_t_4 +
+            rus_h_3_in_spec3_y*rus_s_2 + rus_link1_mass*(rus_c_1*rus_potential_t_2 -
+            rus_potential_t*rus_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1
-            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t))
+            >= 0.0) & (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3))
         )
         sums = m.added(sums, leg, (
-        rus_potential_t_2,
+        rus_potential_t_5,
         ))
-    total_rus, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_rus
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4510,7 +4611,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4553,44 +4654,45 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rus_Kd_1_t_6, inv_rus_Kd_1_t_8, inv_rus_rho2_1_t_4, inv_rus_size, inv_rus_size_t,
-            rus_Kd_1_t_2, rus_Kd_1_t_4, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
+        inv_rus_rho2_1_t, inv_rus_size, inv_rus_size_t, inv_rus_size_t_2, inv_rus_size_t_3,
+            rus_J_3_t, rus_J_3_t_2, rus_base_frame_xx, rus_base_frame_xy, rus_base_frame_xz,
             rus_base_frame_yx, rus_base_frame_yy, rus_base_frame_yz, rus_base_frame_zx,
             rus_base_frame_zy, rus_base_frame_zz, rus_base_point_x, rus_base_point_y,
             rus_base_point_z, rus_branch_1, rus_branch_2, rus_joint2_offset_x,
             rus_platform_joint_offset_x, rus_platform_point_x, rus_platform_point_y,
-            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t,
+            rus_platform_point_z, rus_rho2_1_t, rus_size, rus_size_t_3,
         ) = k
         # (rus-S) from the base point to the connection point
-        rus_q_in_base_x = (
+        rus_q_x = (
         R_xx*rus_platform_point_x + R_xy*rus_platform_point_y + R_xz*rus_platform_point_z
         )
-        rus_q_in_base_y = (
+        rus_q_y = (
         R_yx*rus_platform_point_x + R_yy*rus_platform_point_y + R_yz*rus_platform_point_z
         )
-        rus_q_in_base_z = (
+        rus_q_z = (
         R_zx*rus_platform_point_x + R_zy*rus_platform_point_y + R_zz*rus_platform_point_z
         )
-        rus_S_x = rus_q_in_base_x + t_x - rus_base_point_x
-        rus_S_y = rus_q_in_base_y + t_y - rus_base_point_y
-        rus_S_z = rus_q_in_base_z + t_z - rus_base_point_z
+        rus_S_x = rus_q_x + t_x - rus_base_point_x
+        rus_S_y = rus_q_y + t_y - rus_base_point_y
+        rus_S_z = rus_q_z + t_z - rus_base_point_z
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
-        rus_Kd_1 = 0.5*rus_Kd_1_t + rus_Kd_1_t_2 - rus_Kd_1_t_4
+        rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
         # (rus-px_1) component along the reference direction
         rus_px_1 = (
         rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
         )
-        # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-py_1) component across the reference direction
         rus_py_1 = (
         rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
         )
+        # (rus-Kc_1) factor of the cosine in the equation of joint 1
+        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
         # (rus-Ks_1) factor of the sine in the equation of joint 1
         rus_Ks_1 = rus_joint2_offset_x*rus_py_1
         # (rus-rho2_1) squared amplitude
@@ -4599,121 +4701,112 @@ def _run_condition(m, X):
         rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1
         # (rus-root_1) root, with the sign of the branch
         rus_root_1 = rus_branch_1*sqrt(rus_disc_1)
-        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rus_xi_1_t = inv_rus_Kd_1_t_6*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_t_2 = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
-        # (rus-x_2) from the origin of joint 2 to the connection point
-        rus_x_2_x = inv_rus_Kd_1_t_6*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
-        # (rus-rho2_2) squared amplitude
-        rus_rho2_2 = rus_x_2_x*rus_x_2_x + rus_xi_1_t*rus_xi_1_t
-        # (rus-root_2) root, with the sign of the branch
-        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
-        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_Kd_1_t_8*rus_platform_joint_offset_x*rus_xi_1_t_2
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
-        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
-        # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_x
-        # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_3*(rus_c_2*rus_r_1_x - rus_c_2*rus_r_1_t*rus_s_2)
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rus_rho2_1 = 1.0/rus_rho2_1
         rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
+        # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
+        rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
+        rus_xi_1_in_axes1_z = (
+        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
+        )
+        # (rus-x_2) from the origin of joint 2 to the connection point
+        rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
+        # (rus-rho2_2) squared amplitude
+        rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t
+        # (rus-root_2) root, with the sign of the branch
+        rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
+        # (rus-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_rus_rho2_2 = 1.0/rus_rho2_2
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        # (rus-s_2) sine of the angle of joint 2 from its reference direction
+        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        # (rus-c_3) cosine of the angle of joint 3 from its reference direction
+        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
+        # (rus-s_3) sine of the angle of joint 3 from its reference direction
+        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        # (rus-r_1) from joint 1 to the connection point, along the links
+        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        # (rus-v_1) velocity of the connection point per rate of joint 1
+        rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2)
         # (rus-w_1) reciprocal vector 1
-        axis_z_rus_axes3_r3_x = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        axis_z_rus_axes3_r3_y = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
-        axis_z_rus_axes3_in_base_x = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_xx + axis_z_rus_axes3_r3_y*rus_base_frame_xy
+        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
+        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
+        axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
+        axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
+        rus_w_1_t_3 = rus_s_2*rus_s_3
+        rus_w_1_t_4 = rus_c_2*rus_s_3
+        rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
+        rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
+        axis_y_rus_axes3_x = (
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3
         )
-        axis_z_rus_axes3_in_base_y = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_yx + axis_z_rus_axes3_r3_y*rus_base_frame_yy
+        axis_y_rus_axes3_y = (
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3
         )
-        axis_z_rus_axes3_in_base_z = (
-        axis_z_rus_axes3_r3_x*rus_base_frame_zx + axis_z_rus_axes3_r3_y*rus_base_frame_zy
-        )
-        rus_w_1_t = rus_s_2*rus_s_3
-        rus_w_1_t_2 = rus_c_2*rus_s_3
-        axis_y_rus_axes3_r3_x = rus_c_1*rus_w_1_t + rus_s_1*rus_w_1_t_2
-        axis_y_rus_axes3_r3_y = rus_s_1*rus_w_1_t - rus_c_1*rus_w_1_t_2
-        axis_y_rus_axes3_in_base_x = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_xx + axis_y_rus_axes3_r3_y*rus_base_frame_xy -
-            rus_base_frame_xz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_y = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_yx + axis_y_rus_axes3_r3_y*rus_base_frame_yy -
-            rus_base_frame_yz*rus_c_3
-        )
-        axis_y_rus_axes3_in_base_z = (
-        axis_y_rus_axes3_r3_x*rus_base_frame_zx + axis_y_rus_axes3_r3_y*rus_base_frame_zy -
-            rus_base_frame_zz*rus_c_3
+        axis_y_rus_axes3_z = (
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3
         )
         inv_rus_v_1_t = 1.0/rus_v_1_t
-        rus_w_1_t_3 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
-            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y)
+        rus_w_1_t_7 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+            axis_y_rus_axes3_z*axis_z_rus_axes3_y)
         )
-        rus_w_1_t_4 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
-            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z)
+        rus_w_1_t_8 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+            axis_y_rus_axes3_x*axis_z_rus_axes3_z)
         )
-        rus_w_1_t_5 = (
-        inv_rus_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
-            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x)
+        rus_w_1_t_9 = (
+        inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
+            axis_y_rus_axes3_y*axis_z_rus_axes3_x)
+        )
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rus_pivot_size = abs(rus_rho2_1)
+        rus_pivot_size_2 = abs(rus_rho2_2)
+        rus_pivot_size_3 = abs(rus_r_1_t)
+        rus_pivot_size_4 = abs(rus_v_1_t)
+        rus_least_pivots = (
+        least(least(least(sqrt(inv_rus_rho2_1_t*rus_pivot_size), inv_rus_size*rus_pivot_size_3),
+            inv_rus_size*rus_pivot_size_4), sqrt(inv_rus_size_t_3*rus_pivot_size_2))
         )
         # (rus-H_a_1) moment of the column's unit force about the platform origin
-        rus_H_a_1_x = rus_q_in_base_z*rus_w_1_t_4 - rus_q_in_base_y*rus_w_1_t_5
-        rus_H_a_1_y = rus_q_in_base_x*rus_w_1_t_5 - rus_q_in_base_z*rus_w_1_t_3
-        rus_H_a_1_z = rus_q_in_base_y*rus_w_1_t_3 - rus_q_in_base_x*rus_w_1_t_4
+        rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9
+        rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7
+        rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8
         # (spread) rms distance of the platform points from their centroid
-        rus_spread_t = b_c_x - rus_platform_point_x
-        rus_spread_t_2 = b_c_y - rus_platform_point_y
-        rus_spread_t_3 = b_c_z - rus_platform_point_z
+        rus_spread_t = b_c_in_platform_x - rus_platform_point_x
+        rus_spread_t_2 = b_c_in_platform_y - rus_platform_point_y
+        rus_spread_t_3 = b_c_in_platform_z - rus_platform_point_z
         rus_spread_t_4 = (
         rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 + rus_spread_t_3*rus_spread_t_3
         )
-        # (rus-rho2_1) squared amplitude
-        rus_pivot_size = abs(rus_rho2_1)
-        # (rus-rho2_2) squared amplitude
-        rus_pivot_size_2 = abs(rus_rho2_2)
-        # (rus-w_1) reciprocal vector 1
-        rus_pivot_size_3 = abs(rus_r_1_t)
-        rus_pivot_size_4 = abs(rus_v_1_t)
-        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rus_least_pivots = (
-        least(least(least(sqrt(inv_rus_rho2_1_t_4*rus_pivot_size), inv_rus_size*rus_pivot_size_3),
-            inv_rus_size*rus_pivot_size_4), sqrt(inv_rus_size_t*rus_pivot_size_2))
-        )
         clear = (
         clear & m.every(leg, (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) &
-            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t) & (abs(rus_r_1_t) >
-            _TOLERANCE * rus_size) & (abs(-rus_v_1_t) > _TOLERANCE * rus_size))
+            (abs(rus_rho2_2) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+            _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size))
         )
         reached = reached & m.every(leg, (rus_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         rus_spread_t_4,
         ))
-        out_H[_H_rus[0][leg]] = -rus_w_1_t_3
-        out_H[_H_rus[1][leg]] = -rus_w_1_t_4
-        out_H[_H_rus[2][leg]] = -rus_w_1_t_5
+        # (rus-w_1) reciprocal vector 1
+        out_H[_H_rus[0][leg]] = -rus_w_1_t_7
+        out_H[_H_rus[1][leg]] = -rus_w_1_t_8
+        out_H[_H_rus[2][leg]] = -rus_w_1_t_9
+        # (rus-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rus[3][leg]] = rus_H_a_1_x
         out_H[_H_rus[4][leg]] = rus_H_a_1_y
         out_H[_H_rus[5][leg]] = rus_H_a_1_z
+        # (rus-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rus[0][leg]] = rus_least_pivots
         out_reach[_reach_rus[0][leg]] = rus_disc_1
-    total_rus, = sums
+    spread_rus, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_rus)
+    spread = sqrt(spread_rus)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

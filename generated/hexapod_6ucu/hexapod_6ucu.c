@@ -519,19 +519,19 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_ucu = 0;
-    real total_ucu_x = 0;
-    real total_ucu_y = 0;
-    real total_ucu_z = 0;
-    real total_ucu_xx = 0;
-    real total_ucu_xy = 0;
-    real total_ucu_xz = 0;
-    real total_ucu_yy = 0;
-    real total_ucu_yz = 0;
-    real total_ucu_zz = 0;
-    real total_ucu_x_2 = 0;
-    real total_ucu_y_2 = 0;
-    real total_ucu_z_2 = 0;
+    real m_star_ucu = 0;
+    real h_star_ucu_in_platform_x = 0;
+    real h_star_ucu_in_platform_y = 0;
+    real h_star_ucu_in_platform_z = 0;
+    real J_star_ucu_in_platform_xx = 0;
+    real J_star_ucu_in_platform_xy = 0;
+    real J_star_ucu_in_platform_xz = 0;
+    real J_star_ucu_in_platform_yy = 0;
+    real J_star_ucu_in_platform_yz = 0;
+    real J_star_ucu_in_platform_zz = 0;
+    real b_c_ucu_in_platform_x = 0;
+    real b_c_ucu_in_platform_y = 0;
+    real b_c_ucu_in_platform_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -615,41 +615,72 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         const real ucu_branch_2 = signs_ucu_branch_2[own];
         static const signed char signs_ucu_branch_4[] = {1, 1, -1, -1, -1, -1};
         const real ucu_branch_4 = signs_ucu_branch_4[own];
-        /* (ucu-h_4) first moment of link 4 about the connection point */
-        const real ucu_h_4_x = ucu_link4_centre_of_mass_x*ucu_link4_mass;
-        const real ucu_h_4_y = ucu_link4_centre_of_mass_y*ucu_link4_mass;
-        const real ucu_h_4_z = ucu_link4_centre_of_mass_z*ucu_link4_mass;
-        /* (ucu-J_4) inertia tensor of link 4 about the connection point */
-        const real ucu_J_4_t = ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_x;
-        const real ucu_J_4_t_2 = ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_y;
-        const real ucu_J_4_t_3 = ucu_link4_centre_of_mass_z*ucu_link4_centre_of_mass_z;
-        const real ucu_J_4_t_4 = ucu_J_4_t + ucu_J_4_t_2 + ucu_J_4_t_3;
-        const real ucu_J_4_xx = ucu_link4_inertia_xx - ucu_link4_mass*(ucu_J_4_t - ucu_J_4_t_4);
-        const real ucu_J_4_xy = ucu_link4_inertia_xy -
-            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_y*ucu_link4_mass;
-        const real ucu_J_4_xz = ucu_link4_inertia_xz -
-            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_z*ucu_link4_mass;
-        const real ucu_J_4_yy = ucu_link4_inertia_yy - ucu_link4_mass*(ucu_J_4_t_2 - ucu_J_4_t_4);
-        const real ucu_J_4_yz = ucu_link4_inertia_yz -
-            ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_z*ucu_link4_mass;
-        const real ucu_J_4_zz = ucu_link4_inertia_zz - ucu_link4_mass*(ucu_J_4_t_3 - ucu_J_4_t_4);
+        /* (ucu-h_2) first moment of link 2 about the origin of link 2 */
+        const real ucu_h_2_in_spec2_x = ucu_link2_centre_of_mass_x*ucu_link2_mass;
+        const real ucu_h_2_in_spec2_y = ucu_link2_centre_of_mass_y*ucu_link2_mass;
+        const real ucu_h_2_in_spec2_z = ucu_link2_centre_of_mass_z*ucu_link2_mass;
         /* (ucu-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real ucu_J_2_t = ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_x;
         const real ucu_J_2_t_2 = ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_y;
         const real ucu_J_2_t_3 = ucu_link2_centre_of_mass_z*ucu_link2_centre_of_mass_z;
         const real ucu_J_2_t_4 = ucu_J_2_t + ucu_J_2_t_2 + ucu_J_2_t_3;
-        const real ucu_J_2_xx = ucu_link2_inertia_xx - ucu_link2_mass*(ucu_J_2_t - ucu_J_2_t_4);
-        const real ucu_J_2_xy = ucu_link2_inertia_xy -
+        const real ucu_J_2_in_spec2_xx = ucu_link2_inertia_xx - ucu_link2_mass*(ucu_J_2_t -
+            ucu_J_2_t_4);
+        const real ucu_J_2_in_spec2_xy = ucu_link2_inertia_xy -
             ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_y*ucu_link2_mass;
-        const real ucu_J_2_xz = ucu_link2_inertia_xz -
+        const real ucu_J_2_in_spec2_xz = ucu_link2_inertia_xz -
             ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_z*ucu_link2_mass;
-        const real ucu_J_2_yy = ucu_link2_inertia_yy - ucu_link2_mass*(ucu_J_2_t_2 - ucu_J_2_t_4);
-        const real ucu_J_2_yz = ucu_link2_inertia_yz -
+        const real ucu_J_2_in_spec2_yy = ucu_link2_inertia_yy - ucu_link2_mass*(ucu_J_2_t_2 -
+            ucu_J_2_t_4);
+        const real ucu_J_2_in_spec2_yz = ucu_link2_inertia_yz -
             ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_z*ucu_link2_mass;
-        const real ucu_J_2_zz = ucu_link2_inertia_zz - ucu_link2_mass*(ucu_J_2_t_3 - ucu_J_2_t_4);
+        const real ucu_J_2_in_spec2_zz = ucu_link2_inertia_zz - ucu_link2_mass*(ucu_J_2_t_3 -
+            ucu_J_2_t_4);
+        /* (ucu-h_4) first moment of link 4 about the connection point */
+        const real ucu_h_4_in_spec4_x = ucu_link4_centre_of_mass_x*ucu_link4_mass;
+        const real ucu_h_4_in_spec4_y = ucu_link4_centre_of_mass_y*ucu_link4_mass;
+        const real ucu_h_4_in_spec4_z = ucu_link4_centre_of_mass_z*ucu_link4_mass;
+        /* (ucu-J_4) inertia tensor of link 4 about the connection point */
+        const real ucu_J_4_t = ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_x;
+        const real ucu_J_4_t_2 = ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_y;
+        const real ucu_J_4_t_3 = ucu_link4_centre_of_mass_z*ucu_link4_centre_of_mass_z;
+        const real ucu_J_4_t_4 = ucu_J_4_t + ucu_J_4_t_2 + ucu_J_4_t_3;
+        const real ucu_J_4_in_spec4_xx = ucu_link4_inertia_xx - ucu_link4_mass*(ucu_J_4_t -
+            ucu_J_4_t_4);
+        const real ucu_J_4_in_spec4_xy = ucu_link4_inertia_xy -
+            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_y*ucu_link4_mass;
+        const real ucu_J_4_in_spec4_xz = ucu_link4_inertia_xz -
+            ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_z*ucu_link4_mass;
+        const real ucu_J_4_in_spec4_yy = ucu_link4_inertia_yy - ucu_link4_mass*(ucu_J_4_t_2 -
+            ucu_J_4_t_4);
+        const real ucu_J_4_in_spec4_yz = ucu_link4_inertia_yz -
+            ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_z*ucu_link4_mass;
+        const real ucu_J_4_in_spec4_zz = ucu_link4_inertia_zz - ucu_link4_mass*(ucu_J_4_t_3 -
+            ucu_J_4_t_4);
         /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real ucu_Jc_2_xx = ucu_J_2_xx + ucu_J_4_xx;
+        const real ucu_Jc_2_in_axes2_xx = ucu_J_2_in_spec2_xx + ucu_J_4_in_spec4_xx;
+        /* (ucu-trace_J_4) half the trace of that inertia tensor */
+        const real ucu_trace_J_4 = R(0.5)*ucu_J_4_in_spec4_xx + R(0.5)*ucu_J_4_in_spec4_yy +
+            R(0.5)*ucu_J_4_in_spec4_zz;
+        /* (ucu-Sigma_4) second moment of mass of the links that turn with link 4 */
+        const real ucu_Sigma_4_in_axes4_xx = ucu_trace_J_4 - ucu_J_4_in_spec4_yy;
+        const real ucu_Sigma_4_in_axes4_yy = ucu_trace_J_4 - ucu_J_4_in_spec4_zz;
+        const real ucu_Sigma_4_in_axes4_zz = ucu_trace_J_4 - ucu_J_4_in_spec4_xx;
+        /* (ucu-trace_J_2) half the trace of that inertia tensor */
+        const real ucu_trace_J_2 = R(0.5)*ucu_J_2_in_spec2_xx + R(0.5)*ucu_J_2_in_spec2_yy +
+            R(0.5)*ucu_J_2_in_spec2_zz;
+        /* (ucu-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real ucu_Sigma_2_in_axes2_xx = ucu_trace_J_2 - ucu_J_2_in_spec2_xx;
+        const real ucu_Sigma_2_in_axes2_yy = ucu_trace_J_2 - ucu_J_2_in_spec2_zz;
+        const real ucu_Sigma_2_in_axes2_zz = ucu_trace_J_2 - ucu_J_2_in_spec2_yy;
+        /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real ucu_mu_2_t = gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx +
+            gravity_z*ucu_base_frame_zx;
+        const real ucu_mu_2_t_2 = gravity_x*ucu_base_frame_xy + gravity_y*ucu_base_frame_yy +
+            gravity_z*ucu_base_frame_zy;
+        const real ucu_mu_2_t_3 = gravity_x*ucu_base_frame_xz + gravity_y*ucu_base_frame_yz +
+            gravity_z*ucu_base_frame_zz;
         /* (h_star) first moment about the platform origin */
         const real ucu_h_star_t = ucu_link4_mass*ucu_platform_point_x;
         const real ucu_h_star_t_2 = ucu_link4_mass*ucu_platform_point_y;
@@ -665,58 +696,31 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         const real ucu_J_star_t_8 = ucu_link4_mass*(ucu_J_star_t_2 - ucu_J_star_t_4);
         const real ucu_J_star_t_9 = ucu_link4_mass*ucu_platform_point_y*ucu_platform_point_z;
         const real ucu_J_star_t_10 = ucu_link4_mass*(ucu_J_star_t_3 - ucu_J_star_t_4);
-        /* (ucu-trace_J_4) half the trace of that inertia tensor */
-        const real ucu_trace_J_4 = R(0.5)*ucu_J_4_xx + R(0.5)*ucu_J_4_yy + R(0.5)*ucu_J_4_zz;
-        /* (ucu-Sigma_4) second moment of mass of the links that turn with link 4 */
-        const real ucu_Sigma_4_xx = ucu_trace_J_4 - ucu_J_4_yy;
-        const real ucu_Sigma_4_yy = ucu_trace_J_4 - ucu_J_4_zz;
-        const real ucu_Sigma_4_zz = ucu_trace_J_4 - ucu_J_4_xx;
-        /* (ucu-h_2) first moment of link 2 about the origin of link 2 */
-        const real ucu_h_2_x = ucu_link2_centre_of_mass_x*ucu_link2_mass;
-        const real ucu_h_2_y = ucu_link2_centre_of_mass_y*ucu_link2_mass;
-        const real ucu_h_2_z = ucu_link2_centre_of_mass_z*ucu_link2_mass;
-        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ucu_g_r0_x = gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx +
-            gravity_z*ucu_base_frame_zx;
-        const real ucu_g_r0_y = gravity_x*ucu_base_frame_xy + gravity_y*ucu_base_frame_yy +
-            gravity_z*ucu_base_frame_zy;
-        const real ucu_g_r0_z = gravity_x*ucu_base_frame_xz + gravity_y*ucu_base_frame_yz +
-            gravity_z*ucu_base_frame_zz;
-        /* (ucu-trace_J_2) half the trace of that inertia tensor */
-        const real ucu_trace_J_2 = R(0.5)*ucu_J_2_xx + R(0.5)*ucu_J_2_yy + R(0.5)*ucu_J_2_zz;
-        /* (ucu-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real ucu_Sigma_2_xx = ucu_trace_J_2 - ucu_J_2_xx;
-        const real ucu_Sigma_2_yy = ucu_trace_J_2 - ucu_J_2_zz;
-        const real ucu_Sigma_2_zz = ucu_trace_J_2 - ucu_J_2_yy;
         /* (potential) potential energy */
-        const real ucu_b_r0_x = ucu_base_frame_xx*ucu_base_point_x +
+        const real ucu_potential_t = ucu_base_frame_xx*ucu_base_point_x +
             ucu_base_frame_yx*ucu_base_point_y + ucu_base_frame_zx*ucu_base_point_z;
-        const real ucu_b_r0_y = ucu_base_frame_xy*ucu_base_point_x +
+        const real ucu_potential_t_2 = ucu_base_frame_xy*ucu_base_point_x +
             ucu_base_frame_yy*ucu_base_point_y + ucu_base_frame_zy*ucu_base_point_z;
-        const real ucu_b_r0_z = ucu_base_frame_xz*ucu_base_point_x +
+        const real ucu_potential_t_3 = ucu_base_frame_xz*ucu_base_point_x +
             ucu_base_frame_yz*ucu_base_point_y + ucu_base_frame_zz*ucu_base_point_z;
-        model->ucu_J_2_xy[leg] = ucu_J_2_xy;
-        model->ucu_J_2_xz[leg] = ucu_J_2_xz;
-        model->ucu_J_2_yy[leg] = ucu_J_2_yy;
-        model->ucu_J_2_yz[leg] = ucu_J_2_yz;
-        model->ucu_J_2_zz[leg] = ucu_J_2_zz;
-        model->ucu_J_4_xx[leg] = ucu_J_4_xx;
-        model->ucu_J_4_xy[leg] = ucu_J_4_xy;
-        model->ucu_J_4_xz[leg] = ucu_J_4_xz;
-        model->ucu_J_4_yy[leg] = ucu_J_4_yy;
-        model->ucu_J_4_yz[leg] = ucu_J_4_yz;
-        model->ucu_J_4_zz[leg] = ucu_J_4_zz;
-        model->ucu_Jc_2_xx[leg] = ucu_Jc_2_xx;
-        model->ucu_Sigma_2_xx[leg] = ucu_Sigma_2_xx;
-        model->ucu_Sigma_2_yy[leg] = ucu_Sigma_2_yy;
-        model->ucu_Sigma_2_zz[leg] = ucu_Sigma_2_zz;
-        model->ucu_Sigma_4_xx[leg] = ucu_Sigma_4_xx;
-        model->ucu_Sigma_4_yy[leg] = ucu_Sigma_4_yy;
-        model->ucu_Sigma_4_zz[leg] = ucu_Sigma_4_zz;
-        model->ucu_b_r0_x[leg] = ucu_b_r0_x;
-        model->ucu_b_r0_y[leg] = ucu_b_r0_y;
-        model->ucu_b_r0_z[leg] = ucu_b_r0_z;
+        model->ucu_J_2_in_spec2_xy[leg] = ucu_J_2_in_spec2_xy;
+        model->ucu_J_2_in_spec2_xz[leg] = ucu_J_2_in_spec2_xz;
+        model->ucu_J_2_in_spec2_yy[leg] = ucu_J_2_in_spec2_yy;
+        model->ucu_J_2_in_spec2_yz[leg] = ucu_J_2_in_spec2_yz;
+        model->ucu_J_2_in_spec2_zz[leg] = ucu_J_2_in_spec2_zz;
+        model->ucu_J_4_in_spec4_xx[leg] = ucu_J_4_in_spec4_xx;
+        model->ucu_J_4_in_spec4_xy[leg] = ucu_J_4_in_spec4_xy;
+        model->ucu_J_4_in_spec4_xz[leg] = ucu_J_4_in_spec4_xz;
+        model->ucu_J_4_in_spec4_yy[leg] = ucu_J_4_in_spec4_yy;
+        model->ucu_J_4_in_spec4_yz[leg] = ucu_J_4_in_spec4_yz;
+        model->ucu_J_4_in_spec4_zz[leg] = ucu_J_4_in_spec4_zz;
+        model->ucu_Jc_2_in_axes2_xx[leg] = ucu_Jc_2_in_axes2_xx;
+        model->ucu_Sigma_2_in_axes2_xx[leg] = ucu_Sigma_2_in_axes2_xx;
+        model->ucu_Sigma_2_in_axes2_yy[leg] = ucu_Sigma_2_in_axes2_yy;
+        model->ucu_Sigma_2_in_axes2_zz[leg] = ucu_Sigma_2_in_axes2_zz;
+        model->ucu_Sigma_4_in_axes4_xx[leg] = ucu_Sigma_4_in_axes4_xx;
+        model->ucu_Sigma_4_in_axes4_yy[leg] = ucu_Sigma_4_in_axes4_yy;
+        model->ucu_Sigma_4_in_axes4_zz[leg] = ucu_Sigma_4_in_axes4_zz;
         model->ucu_base_frame_xx[leg] = ucu_base_frame_xx;
         model->ucu_base_frame_xy[leg] = ucu_base_frame_xy;
         model->ucu_base_frame_xz[leg] = ucu_base_frame_xz;
@@ -732,79 +736,88 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         model->ucu_branch_1[leg] = ucu_branch_1;
         model->ucu_branch_2[leg] = ucu_branch_2;
         model->ucu_branch_4[leg] = ucu_branch_4;
-        model->ucu_g_r0_x[leg] = ucu_g_r0_x;
-        model->ucu_g_r0_y[leg] = ucu_g_r0_y;
-        model->ucu_g_r0_z[leg] = ucu_g_r0_z;
-        model->ucu_h_2_x[leg] = ucu_h_2_x;
-        model->ucu_h_2_y[leg] = ucu_h_2_y;
-        model->ucu_h_2_z[leg] = ucu_h_2_z;
-        model->ucu_h_4_x[leg] = ucu_h_4_x;
-        model->ucu_h_4_y[leg] = ucu_h_4_y;
-        model->ucu_h_4_z[leg] = ucu_h_4_z;
+        model->ucu_h_2_in_spec2_x[leg] = ucu_h_2_in_spec2_x;
+        model->ucu_h_2_in_spec2_y[leg] = ucu_h_2_in_spec2_y;
+        model->ucu_h_2_in_spec2_z[leg] = ucu_h_2_in_spec2_z;
+        model->ucu_h_4_in_spec4_x[leg] = ucu_h_4_in_spec4_x;
+        model->ucu_h_4_in_spec4_y[leg] = ucu_h_4_in_spec4_y;
+        model->ucu_h_4_in_spec4_z[leg] = ucu_h_4_in_spec4_z;
         model->ucu_link2_mass[leg] = ucu_link2_mass;
         model->ucu_link4_mass[leg] = ucu_link4_mass;
+        model->ucu_mu_2_t[leg] = ucu_mu_2_t;
+        model->ucu_mu_2_t_2[leg] = ucu_mu_2_t_2;
+        model->ucu_mu_2_t_3[leg] = ucu_mu_2_t_3;
         model->ucu_platform_joint_axis_platform_x[leg] = ucu_platform_joint_axis_platform_x;
         model->ucu_platform_joint_axis_platform_y[leg] = ucu_platform_joint_axis_platform_y;
         model->ucu_platform_joint_axis_platform_z[leg] = ucu_platform_joint_axis_platform_z;
         model->ucu_platform_point_x[leg] = ucu_platform_point_x;
         model->ucu_platform_point_y[leg] = ucu_platform_point_y;
         model->ucu_platform_point_z[leg] = ucu_platform_point_z;
-        total_ucu += leg < 6 ? ucu_link4_mass : 0;
-        total_ucu_x += leg < 6 ? ucu_h_star_t : 0;
-        total_ucu_y += leg < 6 ? ucu_h_star_t_2 : 0;
-        total_ucu_z += leg < 6 ? ucu_h_star_t_3 : 0;
-        total_ucu_xx += leg < 6 ? ucu_J_star_t_5 : 0;
-        total_ucu_xy += leg < 6 ? ucu_J_star_t_6 : 0;
-        total_ucu_xz += leg < 6 ? ucu_J_star_t_7 : 0;
-        total_ucu_yy += leg < 6 ? ucu_J_star_t_8 : 0;
-        total_ucu_yz += leg < 6 ? ucu_J_star_t_9 : 0;
-        total_ucu_zz += leg < 6 ? ucu_J_star_t_10 : 0;
-        total_ucu_x_2 += leg < 6 ? ucu_platform_point_x : 0;
-        total_ucu_y_2 += leg < 6 ? ucu_platform_point_y : 0;
-        total_ucu_z_2 += leg < 6 ? ucu_platform_point_z : 0;
+        model->ucu_potential_t[leg] = ucu_potential_t;
+        model->ucu_potential_t_2[leg] = ucu_potential_t_2;
+        model->ucu_potential_t_3[leg] = ucu_potential_t_3;
+        m_star_ucu += leg < 6 ? ucu_link4_mass : 0;
+        h_star_ucu_in_platform_x += leg < 6 ? ucu_h_star_t : 0;
+        h_star_ucu_in_platform_y += leg < 6 ? ucu_h_star_t_2 : 0;
+        h_star_ucu_in_platform_z += leg < 6 ? ucu_h_star_t_3 : 0;
+        J_star_ucu_in_platform_xx += leg < 6 ? -ucu_J_star_t_5 : 0;
+        J_star_ucu_in_platform_xy += leg < 6 ? -ucu_J_star_t_6 : 0;
+        J_star_ucu_in_platform_xz += leg < 6 ? -ucu_J_star_t_7 : 0;
+        J_star_ucu_in_platform_yy += leg < 6 ? -ucu_J_star_t_8 : 0;
+        J_star_ucu_in_platform_yz += leg < 6 ? -ucu_J_star_t_9 : 0;
+        J_star_ucu_in_platform_zz += leg < 6 ? -ucu_J_star_t_10 : 0;
+        b_c_ucu_in_platform_x += leg < 6 ? ucu_platform_point_x : 0;
+        b_c_ucu_in_platform_y += leg < 6 ? ucu_platform_point_y : 0;
+        b_c_ucu_in_platform_z += leg < 6 ? ucu_platform_point_z : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_ucu;
+    const real m_star = m_star_ucu + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_ucu_x;
-    const real h_star_y = h_star_t_2 + total_ucu_y;
-    const real h_star_z = h_star_t_3 + total_ucu_z;
+    const real h_star_in_platform_x = h_star_t + h_star_ucu_in_platform_x;
+    const real h_star_in_platform_y = h_star_t_2 + h_star_ucu_in_platform_y;
+    const real h_star_in_platform_z = h_star_t_3 + h_star_ucu_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_ucu_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_ucu_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_ucu_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_ucu_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_ucu_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_ucu_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_ucu_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_ucu_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_ucu_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_ucu_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_ucu_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_ucu_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.16666666666666666)*total_ucu_x_2;
-    const real b_c_y = R(0.16666666666666666)*total_ucu_y_2;
-    const real b_c_z = R(0.16666666666666666)*total_ucu_z_2;
+    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_ucu_in_platform_x;
+    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_ucu_in_platform_y;
+    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_ucu_in_platform_z;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->m_star = m_star;
     return OK;
 }
@@ -1373,41 +1386,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1418,26 +1437,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1456,21 +1484,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1481,651 +1509,688 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
+        /* (ucu-h_4) first moment of link 4 about the connection point */
         const real R_xx = s[3*w + j];
         const real R_xy = s[4*w + j];
         const real R_xz = s[5*w + j];
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
+        const real ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z;
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
         const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
+        const real ucu_h_4_t_4 = ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3;
         const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
         const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
         const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_h_4_t_5 = ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3;
+        const real ucu_h_4_t_6 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5;
         const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_h_4_t_7 = ucu_branch_1*root(ucu_h_4_t_6);
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_h_4_t_8 = ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3;
+        const real ucu_h_4_t_9 = ucu_h_4_t_6 + ucu_h_4_t_8*ucu_h_4_t_8;
         const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
-        /* (ucu-px_4) component along the reference direction */
+        const real ucu_h_4_t_10 = ucu_branch_2*root(ucu_h_4_t_9);
+        const real inv_ucu_h_4_t_10 = 1/ucu_h_4_t_10;
+        const real ucu_h_4_t_11 = -inv_ucu_h_4_t_10*ucu_h_4_t_7;
+        const real ucu_e_1_in_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_8;
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_h_4_t_12 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_h_4_t_13 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_h_4_t_14 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
-        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real inv_ucu_h_4_t_7 = 1/ucu_h_4_t_7;
+        const real ucu_h_4_t_15 = -inv_ucu_h_4_t_7*ucu_h_4_t_5;
+        const real ucu_h_4_t_16 = inv_ucu_h_4_t_7*ucu_h_4_t_4;
+        const real ucu_end_p1_in_turn4_y = ucu_h_4_t_12*ucu_h_4_t_15 + ucu_h_4_t_13*ucu_h_4_t_16;
+        const real ucu_h_4_t_17 = ucu_h_4_t_12*ucu_h_4_t_16 - ucu_h_4_t_13*ucu_h_4_t_15;
+        const real ucu_end_p1_in_turn4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_17 +
+            ucu_h_4_t_11*ucu_h_4_t_14;
+        const real ucu_h_4_t_18 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
+            ucu_end_p1_in_turn4_y*ucu_end_p1_in_turn4_y;
         const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
-        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
-        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
-        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
-        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
-        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
-        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
-            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
-            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
-            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
-        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
-        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
-        const real ucu_w_1_t_3 = inv_ucu_v_1_r0_y*ucu_s_4;
-        const real ucu_w_1_t_4 = inv_ucu_v_1_r0_y*ucu_c_4;
-        /* (ucu-w_2) force part of reciprocal wrench 2 */
-        const real ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_r0_y*ucu_v_1_r0_x;
-        const real ucu__r1_x = inv_ucu_root_2*ucu_c_4 - ucu_s_4*ucu_w_2_t;
-        const real ucu__r1_y = -inv_ucu_root_2*ucu_s_4 - ucu_c_4*ucu_w_2_t;
-        /* (ucu-w_4) force part of reciprocal wrench 4 */
-        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
-        const real ucu_w_4_t = inv_ucu_end_p1_r5_x*inv_ucu_root_2*ucu_n_m1_t;
-        const real ucu_w_4_t_2 = inv_ucu_v_1_r0_y*(inv_ucu_end_p1_r5_x*ucu_w_1_t_2 +
-            ucu_v_1_r0_x*ucu_w_4_t);
-        const real ucu__r1_x_2 = ucu_c_4*ucu_w_4_t - ucu_s_4*ucu_w_4_t_2;
-        const real ucu__r1_y_2 = -ucu_c_4*ucu_w_4_t_2 - ucu_s_4*ucu_w_4_t;
-        /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real ucu_d_alpha_4_zy = ucu__r1_y_2 + ucu_s_2*ucu_w_1_t_4;
-        /* (ucu-L_c_4) moment about joint 4 that accelerates joint 4, per unit */
-        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
-        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
-        const real ucu_L_c_4_r0_y = ucu_J_4_xy*ucu_s_4 + ucu_J_4_xz*ucu_c_4;
-        /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
-        const real ucu_J_4_xx = m->ucu_J_4_xx[i];
-        const real ucu_D_1_4 = ucu_J_4_xx*ucu_s_2 + ucu_J_4_xz*ucu_v_1_t_2 - ucu_J_4_xy*ucu_v_1_t;
-        /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_4_t = inv_ucu_end_p1_r5_x*ucu_J_4_xx;
-        const real ucu_d_Gamma_4_t_2 = inv_ucu_root_2*(ucu_L_c_4_r0_y +
-            ucu_d_Gamma_4_t*ucu_n_m1_t);
-        const real ucu_d_Gamma_4_t_3 = inv_ucu_v_1_r0_y*(ucu_d_Gamma_4_t*ucu_w_1_t_2 +
-            ucu_d_Gamma_4_t_2*ucu_v_1_r0_x - ucu_D_1_4);
-        const real ucu_h_4_z = m->ucu_h_4_z[i];
-        const real ucu_d_Gamma_4_x = ucu_c_4*ucu_d_Gamma_4_t_2 - ucu_h_4_z -
-            ucu_d_Gamma_4_t_3*ucu_s_4;
-        const real ucu_h_4_y = m->ucu_h_4_y[i];
-        const real ucu_d_Gamma_4_y = ucu_h_4_y - ucu_c_4*ucu_d_Gamma_4_t_3 -
-            ucu_d_Gamma_4_t_2*ucu_s_4;
+        const real ucu_h_4_t_19 = ucu_branch_4*root(ucu_h_4_t_18);
+        const real inv_ucu_h_4_t_19 = 1/ucu_h_4_t_19;
+        const real ucu_e_2_in_axes4_y = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_x;
+        const real ucu_e_2_in_axes4_x = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_y;
+        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
+        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
+        const real ucu_h_4_in_axes2_y = ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z;
         /* (ucu-J_4) inertia tensor of link 4 about the connection point */
-        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
-        const real ucu_J_4_t = ucu_J_4_yz*ucu_s_4;
-        const real ucu_J_4_yy = m->ucu_J_4_yy[i];
-        const real ucu__x = ucu_J_4_yy*ucu_c_4 - ucu_J_4_t;
-        const real ucu_J_4_t_2 = ucu_J_4_yz*ucu_c_4;
-        const real ucu_J_4_zz = m->ucu_J_4_zz[i];
-        const real ucu__x_2 = ucu_J_4_t_2 - ucu_J_4_zz*ucu_s_4;
-        /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
-        const real ucu_Jc_2_xy = ucu_J_4_xy*ucu_c_4 - ucu_J_2_xz - ucu_J_4_xz*ucu_s_4;
-        /* (ucu-L_c_2) moment about joint 2 that accelerates joint 2, per unit */
-        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
-        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
-        const real ucu_L_c_2_r0_y = ucu_s_2*(ucu_J_2_xy + ucu_L_c_4_r0_y) -
-            ucu_c_2*(ucu__x*ucu_s_4 + ucu__x_2*ucu_c_4 - ucu_J_2_yz);
-        /* (ucu-h_4) first moment of link 4 about the connection point */
-        const real ucu_h_4_r1_x = ucu_c_4*ucu_h_4_y - ucu_h_4_z*ucu_s_4;
-        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_2_t = inv_ucu_end_p1_r5_x*ucu_L_c_4_r0_y;
-        const real ucu_J_2_yy = m->ucu_J_2_yy[i];
-        const real ucu_d_Gamma_2_t_2 = inv_ucu_root_2*(ucu_J_2_yy + ucu_c_4*(ucu_J_4_t +
-            ucu_J_4_zz*ucu_c_4) + ucu_d_Gamma_2_t*ucu_n_m1_t + ucu_s_4*(ucu_J_4_t_2 +
-            ucu_J_4_yy*ucu_s_4));
-        const real ucu_d_Gamma_2_t_3 = inv_ucu_v_1_r0_y*(ucu_d_Gamma_2_t*ucu_w_1_t_2 +
-            ucu_d_Gamma_2_t_2*ucu_v_1_r0_x - ucu_L_c_2_r0_y);
-        const real ucu_h_4_x = m->ucu_h_4_x[i];
-        const real ucu_d_Gamma_2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_x;
-        /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_1_t = inv_ucu_end_p1_r5_x*ucu_D_1_4;
-        const real ucu_d_Gamma_1_t_2 = inv_ucu_root_2*(ucu_L_c_2_r0_y +
-            ucu_d_Gamma_1_t*ucu_n_m1_t);
-        const real ucu_J_2_zz = m->ucu_J_2_zz[i];
-        const real ucu_Jc_2_xx = m->ucu_Jc_2_xx[i];
-        const real ucu_d_Gamma_1_t_3 = ucu_c_2*(ucu_Jc_2_xy*ucu_s_2 - ucu_c_2*(ucu_J_2_zz +
-            ucu__x*ucu_c_4 - ucu__x_2*ucu_s_4)) + ucu_d_Gamma_1_t*ucu_w_1_t_2 +
-            ucu_d_Gamma_1_t_2*ucu_v_1_r0_x - ucu_s_2*(ucu_Jc_2_xx*ucu_s_2 - ucu_Jc_2_xy*ucu_c_2);
-        const real ucu_d_Gamma_1_t_4 = ucu_c_2*ucu_d_Gamma_1_t_2;
-        const real ucu_d_Gamma_1_x = ucu_c_2*ucu_h_4_x + ucu_h_4_r1_x*ucu_s_2 -
-            inv_ucu_v_1_r0_y*ucu_d_Gamma_1_t_3;
-        const real ucu_d_Gamma_1_y = ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 -
-            ucu_d_Gamma_1_t_2*ucu_s_2;
-        const real ucu_d_Gamma_1_r1_x = -ucu_c_2*ucu_d_Gamma_1_y - ucu_d_Gamma_1_t_4*ucu_s_2;
-        const real ucu_d_Gamma_1_r1_y = ucu_c_2*ucu_d_Gamma_1_t_4 - ucu_d_Gamma_1_y*ucu_s_2;
-        const real ucu_d_Gamma_1_r3_y = ucu_c_4*ucu_d_Gamma_1_x - ucu_d_Gamma_1_r1_y*ucu_s_4;
-        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_2_r1_y = -ucu_c_4*ucu_d_Gamma_2_t_3 - ucu_d_Gamma_2_y*ucu_s_4;
-        /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real ucu_d_G_xz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_3 - ucu__r1_x*ucu_h_4_r1_x;
-        const real ucu_d_G_yz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_4 - ucu__r1_y*ucu_h_4_r1_x;
-        /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ucu_d_c_xx = ucu_h_4_z*(ucu__r1_x_2 + ucu_s_2*ucu_w_1_t_3) -
-            ucu__r1_x*(ucu_c_4*ucu_d_Gamma_2_y - ucu_d_Gamma_2_t_3*ucu_s_4) -
-            ucu__r1_x_2*ucu_d_Gamma_4_x - ucu_h_4_x*(ucu__r1_x*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_3)
-            - ucu_w_1_t_3*(ucu_c_4*ucu_d_Gamma_1_r1_y + ucu_d_Gamma_1_x*ucu_s_4);
-        const real ucu_d_c_xy = ucu_d_alpha_4_zy*ucu_h_4_z - ucu__r1_x*ucu_d_Gamma_2_r1_y -
-            ucu__r1_x_2*ucu_d_Gamma_4_y - ucu_d_Gamma_1_r3_y*ucu_w_1_t_3 -
-            ucu_h_4_x*(ucu__r1_y*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_4);
-        const real ucu_d_c_yy = ucu_h_4_x*(ucu__r1_y*ucu_s_4 - ucu_v_1_t*ucu_w_1_t_4) -
-            ucu__r1_y*ucu_d_Gamma_2_r1_y - ucu__r1_y_2*ucu_d_Gamma_4_y -
-            ucu_d_Gamma_1_r3_y*ucu_w_1_t_4 - ucu_d_alpha_4_zy*ucu_h_4_y;
-        /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ucu_Q_t = R(0.5)*ucu_d_c_xx;
-        const real ucu_Q_t_2 = R(0.5)*ucu_d_c_yy;
-        const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_in_base_x*ucu_d_c_xy
-            - ucu_axis_z_x*ucu_d_G_xz;
-        const real ucu_Q_t_4 = axis_x_ucu_axes4_y*ucu_Q_t + axis_y_ucu_axes4_in_base_y*ucu_d_c_xy
-            - ucu_axis_z_y*ucu_d_G_xz;
-        const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_in_base_z*ucu_d_c_xy
-            - ucu_axis_z_z*ucu_d_G_xz;
-        const real ucu_Q_t_6 = axis_y_ucu_axes4_in_base_x*ucu_Q_t_2 - ucu_axis_z_x*ucu_d_G_yz;
-        const real ucu_Q_t_7 = axis_y_ucu_axes4_in_base_y*ucu_Q_t_2 - ucu_axis_z_y*ucu_d_G_yz;
-        const real ucu_Q_t_8 = axis_y_ucu_axes4_in_base_z*ucu_Q_t_2 - ucu_axis_z_z*ucu_d_G_yz;
-        const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_6;
-        const real ucu_Q_t_10 = 2*ucu_Q_t_9;
-        const real ucu_Q_t_11 = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_x_ucu_axes4_y*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_7 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_6;
-        const real ucu_Q_t_12 = axis_x_ucu_axes4_x*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_6;
-        const real ucu_Q_t_13 = axis_x_ucu_axes4_y*ucu_Q_t_4 +
-            axis_y_ucu_axes4_in_base_y*ucu_Q_t_7;
-        const real ucu_Q_t_14 = 2*ucu_Q_t_13;
-        const real ucu_Q_t_15 = axis_x_ucu_axes4_y*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_4 +
-            axis_y_ucu_axes4_in_base_y*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_7;
-        const real ucu_Q_t_16 = axis_x_ucu_axes4_z*ucu_Q_t_5 +
-            axis_y_ucu_axes4_in_base_z*ucu_Q_t_8;
-        const real ucu_Q_t_17 = 2*ucu_Q_t_16;
-        /* (ucu-o_4) moment part of reciprocal wrench 4 */
-        const real ucu_o_4_x = inv_ucu_end_p1_r5_x*ucu_end_p1_r3_x;
-        /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_4_t = ucu_J_4_xx*ucu_o_4_x;
-        /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_2_t = ucu_L_c_4_r0_y*ucu_o_4_x;
-        /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_x;
-        /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ucu_dalpha_c_xx = ucu__r1_x*ucu_dalpha_Gamma_2_t +
-            ucu__r1_x_2*ucu_dalpha_Gamma_4_t + ucu_dalpha_Gamma_1_t*ucu_w_1_t_3 -
-            ucu_h_4_z*ucu_o_4_x;
-        const real ucu_dalpha_c_xz = ucu_h_4_z - ucu_D_1_4*ucu_w_1_t_3 - ucu_J_4_xx*ucu__r1_x_2 -
-            ucu_L_c_4_r0_y*ucu__r1_x;
-        const real ucu_dalpha_c_yx = ucu__r1_y*ucu_dalpha_Gamma_2_t +
-            ucu__r1_y_2*ucu_dalpha_Gamma_4_t + ucu_dalpha_Gamma_1_t*ucu_w_1_t_4 +
-            ucu_h_4_y*ucu_o_4_x;
-        const real ucu_dalpha_c_yz = -ucu_h_4_y - ucu_D_1_4*ucu_w_1_t_4 - ucu_J_4_xx*ucu__r1_y_2 -
-            ucu_L_c_4_r0_y*ucu__r1_y;
-        const real ucu_dalpha_c_in_base_x = axis_x_ucu_axes4_x*ucu_dalpha_c_xx +
-            axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yx;
-        const real ucu_dalpha_c_in_base_y = axis_x_ucu_axes4_y*ucu_dalpha_c_xx +
-            axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yx;
-        const real ucu_dalpha_c_in_base_z = axis_x_ucu_axes4_z*ucu_dalpha_c_xx +
-            axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yx;
-        const real ucu_dalpha_c_in_base_x_2 = axis_x_ucu_axes4_x*ucu_dalpha_c_xz +
-            axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yz;
-        const real ucu_dalpha_c_in_base_y_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_xz +
-            axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yz;
-        const real ucu_dalpha_c_in_base_z_2 = axis_x_ucu_axes4_z*ucu_dalpha_c_xz +
-            axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yz;
-        /* (M_ta) coupling block of M */
-        const real ucu_M_ta_t = ucu_Q_t_11*ucu_q_in_base_z;
-        const real ucu_M_ta_t_2 = ucu_Q_t_12*ucu_q_in_base_y;
-        const real ucu_M_ta_t_3 = ucu_Q_t_15*ucu_q_in_base_x;
-        const real ucu_M_ta_t_4 = ucu_M_ta_t - ucu_M_ta_t_2 -
-            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_x - ucu_axis_z_x*ucu_dalpha_c_in_base_x_2;
-        const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_x +
-            ucu_Q_t_10*ucu_q_in_base_z + ucu_axis_z_y*ucu_dalpha_c_in_base_x_2 -
-            ucu_Q_t_12*ucu_q_in_base_x;
-        const real ucu_M_ta_t_6 = ucu_Q_t_10*ucu_q_in_base_y -
-            axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_x - ucu_Q_t_11*ucu_q_in_base_x -
-            ucu_axis_z_z*ucu_dalpha_c_in_base_x_2;
-        const real ucu_M_ta_t_7 = ucu_Q_t_14*ucu_q_in_base_z -
-            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_y - ucu_Q_t_15*ucu_q_in_base_y -
-            ucu_axis_z_x*ucu_dalpha_c_in_base_y_2;
-        const real ucu_M_ta_t_8 = ucu_M_ta_t + axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_y +
-            ucu_axis_z_y*ucu_dalpha_c_in_base_y_2 - ucu_M_ta_t_3;
-        const real ucu_M_ta_t_9 = ucu_Q_t_11*ucu_q_in_base_y -
-            axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_y - ucu_Q_t_14*ucu_q_in_base_x -
-            ucu_axis_z_z*ucu_dalpha_c_in_base_y_2;
-        const real ucu_M_ta_t_10 = ucu_Q_t_15*ucu_q_in_base_z -
-            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_z - ucu_Q_t_17*ucu_q_in_base_y -
-            ucu_axis_z_x*ucu_dalpha_c_in_base_z_2;
-        const real ucu_M_ta_t_11 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_z +
-            ucu_Q_t_12*ucu_q_in_base_z + ucu_axis_z_y*ucu_dalpha_c_in_base_z_2 -
-            ucu_Q_t_17*ucu_q_in_base_x;
-        const real ucu_M_ta_t_12 = ucu_M_ta_t_3 + axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_z +
-            ucu_axis_z_z*ucu_dalpha_c_in_base_z_2 - ucu_M_ta_t_2;
-        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
-        const real ucu_dalpha_G_m1_t = inv_ucu_end_p1_r5_x*ucu_dalpha_Gamma_4_t;
-        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real ucu_d_G_m1_t = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_x;
-        const real ucu_d_G_m1_t_2 = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_y;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_base_x = axis_x_ucu_axes4_x*ucu_end_p1_r3_x -
-            ucu_axis_z_x*ucu_end_p1_r5_x;
-        const real ucu_n_m1_in_base_y = axis_x_ucu_axes4_y*ucu_end_p1_r3_x -
-            ucu_axis_z_y*ucu_end_p1_r5_x;
-        const real ucu_n_m1_in_base_z = axis_x_ucu_axes4_z*ucu_end_p1_r3_x -
-            ucu_axis_z_z*ucu_end_p1_r5_x;
-        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
-        const real ucu_dalpha_G_m1_in_base_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_t -
-            ucu_axis_z_y*ucu_d_Gamma_4_t;
-        const real ucu_dalpha_G_m1_in_base_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_t -
-            ucu_axis_z_z*ucu_d_Gamma_4_t;
-        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real ucu_d_G_m1_in_base_x = -axis_x_ucu_axes4_x*ucu_d_G_m1_t -
-            axis_y_ucu_axes4_in_base_x*ucu_d_G_m1_t_2;
-        const real ucu_d_G_m1_in_base_y = -axis_x_ucu_axes4_y*ucu_d_G_m1_t -
-            axis_y_ucu_axes4_in_base_y*ucu_d_G_m1_t_2;
-        const real ucu_d_G_m1_in_base_z = -axis_x_ucu_axes4_z*ucu_d_G_m1_t -
-            axis_y_ucu_axes4_in_base_z*ucu_d_G_m1_t_2;
-        /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real ucu_d_G_m_xx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_x;
-        const real ucu_d_G_m_xy = ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_x;
-        const real ucu_d_G_m_xz = ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_x;
-        const real ucu_d_G_m_yx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_y;
-        /* (M_aa) rotational block of M */
-        const real ucu_M_aa_t = ucu_M_ta_t_7*ucu_q_in_base_z + ucu_d_G_m_xy*ucu_q_in_base_z -
-            ucu_M_ta_t_10*ucu_q_in_base_y - ucu_d_G_m_xz*ucu_q_in_base_y -
-            ucu_n_m1_in_base_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_t -
-            ucu_axis_z_x*ucu_d_Gamma_4_t);
-        const real ucu_M_aa_t_2 = ucu_M_ta_t_8*ucu_q_in_base_z + ucu_d_G_m_xx*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_x - ucu_M_ta_t_11*ucu_q_in_base_y -
-            ucu_d_G_m_xz*ucu_q_in_base_x;
-        const real ucu_M_aa_t_3 = ucu_M_ta_t_12*ucu_q_in_base_y + ucu_M_ta_t_9*ucu_q_in_base_z +
-            ucu_d_G_m_xx*ucu_q_in_base_y - ucu_d_G_m_xy*ucu_q_in_base_x -
-            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_x;
-        const real ucu_M_aa_t_4 = ucu_M_ta_t_11*ucu_q_in_base_x + ucu_d_G_m_yx*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_y - ucu_M_ta_t_5*ucu_q_in_base_z -
-            ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_y*ucu_q_in_base_x;
-        const real ucu_M_aa_t_5 = ucu_M_ta_t_12*ucu_q_in_base_x + ucu_M_ta_t_6*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_y +
-            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_y*ucu_q_in_base_x -
-            ucu_d_G_m_yx*ucu_q_in_base_y;
-        const real ucu_M_aa_t_6 = ucu_M_ta_t_6*ucu_q_in_base_y +
-            ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_z*ucu_q_in_base_y - ucu_M_ta_t_9*ucu_q_in_base_x
-            - ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_z -
-            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_z*ucu_q_in_base_x;
+        const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
+        const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
+        const real ucu_J_4_in_axes2_xz = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x +
+            ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y;
         /* (ucu-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
         const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
         const real t_dot_x = s[12*w + j];
         const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
+        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_16 - ucu_S_dot_t_5*ucu_h_4_t_15;
+        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z -
+            ucu_S_dot_t_7*ucu_h_4_t_11;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_e_1_in_axes4_x = ucu_e_2_in_axes4_y*ucu_h_4_t_11;
+        const real ucu_e_1_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_h_4_t_11;
+        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_10;
+        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_h_4_t_10;
+        const real ucu_v_1_in_axes2_y = ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x -
+            ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y;
+        const real ucu_v_1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_14 -
+            ucu_h_4_t_11*ucu_h_4_t_17;
+        const real axis_z_ucu_axes4_x = inv_ucu_h_4_t_10*ucu_h_4_t;
+        const real axis_z_ucu_axes4_y = inv_ucu_h_4_t_10*ucu_h_4_t_2;
+        const real axis_z_ucu_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_3;
+        const real ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x;
+        const real ucu_n_m1_t_2 = ucu_e_2_in_axes4_y*ucu_h_4_t_15 - ucu_h_4_t_16*ucu_n_m1_t;
+        const real ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_16 + ucu_h_4_t_15*ucu_n_m1_t;
+        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_n_m1_t_2 +
+            ucu_base_frame_xy*ucu_n_m1_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_n_m1_t_2 +
+            ucu_base_frame_yy*ucu_n_m1_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_n_m1_t_2 +
+            ucu_base_frame_zy*ucu_n_m1_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*axis_z_ucu_axes4_z -
+            axis_y_ucu_axes4_z*axis_z_ucu_axes4_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*axis_z_ucu_axes4_x -
+            axis_y_ucu_axes4_x*axis_z_ucu_axes4_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*axis_z_ucu_axes4_y -
+            axis_y_ucu_axes4_y*axis_z_ucu_axes4_x;
+        const real ucu_end_p1_in_axes4_x = ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_y +
+            ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x;
+        const real ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_n_m1_x = axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x -
+            axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x;
+        const real ucu_n_m1_y = axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x -
+            axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x;
+        const real ucu_n_m1_z = axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x -
+            axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
+        const real ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x;
+        const real ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y;
+        /* (ucu-w_2) force part of reciprocal wrench 2 */
+        const real ucu_w_2_t = inv_ucu_h_4_t_10*inv_ucu_v_1_in_axes2_z*ucu_v_1_in_axes2_y;
+        const real ucu_w_2_in_axes4_x = inv_ucu_h_4_t_10*ucu_e_2_in_axes4_y -
+            ucu_e_2_in_axes4_x*ucu_w_2_t;
+        const real ucu_w_2_in_axes4_y = -inv_ucu_h_4_t_10*ucu_e_2_in_axes4_x -
+            ucu_e_2_in_axes4_y*ucu_w_2_t;
+        /* (ucu-w_4) force part of reciprocal wrench 4 */
+        const real ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x -
+            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_w_4_t_2 = -1/ucu_end_p1_in_axes4_x;
+        const real ucu_w_4_t_3 = -inv_ucu_h_4_t_10*ucu_n_m1_in_axes2_z*ucu_w_4_t_2;
+        const real ucu_w_4_t_4 = inv_ucu_v_1_in_axes2_z*(ucu_v_1_in_axes2_y*ucu_w_4_t_3 -
+            ucu_w_4_t*ucu_w_4_t_2);
+        const real ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_3 -
+            ucu_e_2_in_axes4_x*ucu_w_4_t_4;
+        const real ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_3 -
+            ucu_e_2_in_axes4_y*ucu_w_4_t_4;
+        /* (ucu-o_4) moment part of reciprocal wrench 4 */
+        const real ucu_o_4_in_axes4_x = ucu_n_m1_in_axes4_x*ucu_w_4_t_2;
         /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real ucu_eta_1 = omega_x*ucu_n_m1_in_base_x + omega_y*ucu_n_m1_in_base_y +
-            omega_z*ucu_n_m1_in_base_z;
-        /* (ucu-S_dot) velocity of the connection point */
-        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
-            + ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
-            + ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
-            + ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
-        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
+        const real ucu_eta_1 = omega_x*ucu_n_m1_x + omega_y*ucu_n_m1_y + omega_z*ucu_n_m1_z;
+        /* (ucu-qd_1) rate of joint 1 */
+        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_h_4_t_15 +
+            ucu_S_dot_t_5*ucu_h_4_t_16);
+        /* (ucu-qd_2) rate of joint 2 */
+        const real ucu_qd_2 = inv_ucu_h_4_t_10*(ucu_S_dot_t_6*ucu_h_4_t_11 +
+            ucu_S_dot_t_7*ucu_e_1_in_axes4_z - ucu_qd_1*ucu_v_1_in_axes2_y);
         /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
-            ucu_S_dot_r0_x*ucu_c_1);
-        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
-            - ucu_qd_4_t*ucu_v_1_r0_x);
-        const real ucu_qd_4_t_3 = inv_ucu_end_p1_r5_x*(ucu_eta_1 + ucu_qd_4_t*ucu_w_1_t_2 -
-            ucu_n_m1_t*ucu_qd_4_t_2);
+        const real ucu_qd_4 = ucu_w_4_t_2*(ucu_eta_1 + ucu_qd_1*ucu_w_4_t -
+            ucu_n_m1_in_axes2_z*ucu_qd_2);
         /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
-        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
+        const real ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1;
+        const real ucu_omega_1_in_axes2_y = ucu_h_4_t_11*ucu_qd_1;
         /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
-        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
+        const real ucu_omega_2_in_axes4_x = ucu_e_2_in_axes4_x*ucu_qd_2 +
+            ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y;
+        const real ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 -
+            ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
+        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
+        const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
+        const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
         /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_z = ucu_omega_1_t - ucu_qd_4_t_3;
-        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_4_t_3;
+        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
+        /* (ucu-W_4) centripetal tensor of link 4 */
+        const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
+        const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
         /* (ucu-u_1) centripetal acceleration of the connection point */
         const real ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
         const real ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
         const real ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
+        const real ucu_u_1_in_axes4_x = axis_x_ucu_axes4_x*ucu_u_1_x +
+            axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z;
+        const real ucu_u_1_in_axes4_y = axis_y_ucu_axes4_x*ucu_u_1_x +
+            axis_y_ucu_axes4_y*ucu_u_1_y + axis_y_ucu_axes4_z*ucu_u_1_z;
         /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2;
-        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t;
-        const real ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2;
-        const real ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2;
-        const real ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x;
-        const real ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y;
-        const real ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y;
+        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_y;
+        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+        const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
+        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+        const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t;
         /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
-        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
-            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
-        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
-            ucu_bias_t*ucu_omega_2_r1_x;
-        /* (ucu-u_1) centripetal acceleration of the connection point */
-        const real ucu_u_1_tip_x = axis_x_ucu_axes4_x*ucu_u_1_x + axis_x_ucu_axes4_y*ucu_u_1_y +
-            axis_x_ucu_axes4_z*ucu_u_1_z;
-        const real ucu_u_1_tip_y = axis_y_ucu_axes4_in_base_x*ucu_u_1_x +
-            axis_y_ucu_axes4_in_base_y*ucu_u_1_y + axis_y_ucu_axes4_in_base_z*ucu_u_1_z;
+        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
+        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
+            ucu_h_4_t_10*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
+        const real ucu_bias_in_axes4_y = ucu_h_4_t_10*(ucu_zeta_2_t +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
         /* (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real ucu_rel_o_x = ucu_u_1_tip_x - ucu_bias_x;
-        const real ucu_rel_o_y = ucu_u_1_tip_y - ucu_bias_y;
-        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_x = -ucu_zeta_2_t - ucu_zeta_4_x;
+        const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x;
+        const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y;
         /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
-            axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
-            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
-        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
-            omega_z*ucu_axis_z_z;
-        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
-        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        const real ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_y -
+            ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x;
+        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
+            + axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
+            + axis_y_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_z = axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y
+            + axis_z_ucu_axes4_z*omega_z;
+        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
+        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
+            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
         /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
-            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
-            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
-        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
-        /* (ucu-qdd_4_o) remainder without the acceleration in: acceleration of joint 4 */
-        const real ucu_qdd_4_o_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_o_y + ucu_rel_o_x*ucu_s_4);
-        const real ucu_qdd_4_o_t_2 = inv_ucu_root_2*(ucu_qdd_4_o_t*ucu_v_1_r0_x +
-            ucu_rel_o_y*ucu_s_4 - ucu_c_4*ucu_rel_o_x);
+        const real ucu_nu_1_t = ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x -
+            ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
+            ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
+            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
+        const real ucu_nu_1 = ucu_nu_1_t - ucu_nu_1_t_2;
+        /* (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real ucu_qdd_1_o = inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
+        /* (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real ucu_qdd_2_o = -inv_ucu_h_4_t_10*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y +
+            ucu_qdd_1_o*ucu_v_1_in_axes2_y - ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x);
         /* (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ucu_alpha_1_o_t = ucu_qdd_4_o_t*ucu_s_2;
-        const real ucu_alpha_1_o_t_2 = ucu_c_2*ucu_qdd_4_o_t;
+        const real ucu_alpha_1_o_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1_o;
+        const real ucu_alpha_1_o_in_axes2_y = ucu_h_4_t_11*ucu_qdd_1_o;
         /* (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ucu_alpha_2_o_x = ucu_alpha_1_o_t - ucu_zeta_2_x;
-        const real ucu_alpha_2_o_y = -ucu_alpha_1_o_t_2 - ucu_zeta_2_y;
+        const real ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
+        const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz;
+        /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real ucu_B_2_o_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2_o;
+        const real ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
+        const real ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
+        const real ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
+        /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
+        const real ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y +
+            ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y;
         /* (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
-        const real ucu_alpha_4_o_x = ucu_alpha_2_o_y*ucu_c_4 - ucu_zeta_4_x -
-            ucu_qdd_4_o_t_2*ucu_s_4;
-        const real ucu_alpha_4_o_y = ucu_omega_2_r1_x*ucu_qd_4_t_3 - ucu_alpha_2_o_y*ucu_s_4 -
-            ucu_c_4*ucu_qdd_4_o_t_2;
-        const real ucu_alpha_4_o_z = ucu_alpha_2_o_x - inv_ucu_end_p1_r5_x*(ucu_nu_1 +
-            ucu_n_m1_t*ucu_qdd_4_o_t_2 + ucu_qdd_4_o_t*ucu_w_1_t_2);
-        /* (ucu-W_4) centripetal tensor of link 4 */
-        const real ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z;
-        const real ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z;
-        const real ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z;
+        const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
+            ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y + ucu_e_2_in_axes4_x*ucu_qdd_2_o;
+        const real ucu_alpha_4_o_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qdd_2_o -
+            ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_x - ucu_omega_2_in_axes4_x*ucu_qd_4;
+        const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x + ucu_w_4_t_2*(ucu_nu_1 +
+            ucu_qdd_1_o*ucu_w_4_t - ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
         /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
-        const real ucu_B_4_o_xy = ucu_W_2_xy_2 - ucu_alpha_4_o_z;
-        const real ucu_B_4_o_xz = ucu_W_4_xz + ucu_alpha_4_o_y;
-        const real ucu_B_4_o_yx = ucu_W_2_xy_2 + ucu_alpha_4_o_z;
-        const real ucu_B_4_o_yz = ucu_W_4_yz - ucu_alpha_4_o_x;
-        const real ucu_B_4_o_zx = ucu_W_4_xz - ucu_alpha_4_o_y;
-        const real ucu_B_4_o_zy = ucu_W_4_yz + ucu_alpha_4_o_x;
-        /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-           about its reference point */
-        const real ucu_phi_4_o_z = ucu_B_4_o_zx*ucu_h_4_y + ucu_B_4_o_zy*ucu_h_4_z -
-            ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5);
+        const real ucu_B_4_o_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z;
+        const real ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y;
+        const real ucu_B_4_o_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z;
+        const real ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x;
+        const real ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y;
+        const real ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x;
         /* (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
            link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real ucu_acc_4_o_x = ucu_u_1_tip_x - axis_x_ucu_axes4_x*gravity_x -
+        const real ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x -
             axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_o_y = ucu_u_1_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
-            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z;
-        const real ucu_acc_4_o_z = ucu_axis_z_x*ucu_u_1_x + ucu_axis_z_y*ucu_u_1_y +
-            ucu_axis_z_z*ucu_u_1_z - gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y -
-            gravity_z*ucu_axis_z_z;
+        const real ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*gravity_x -
+            axis_y_ucu_axes4_y*gravity_y - axis_y_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_o_in_axes4_z = axis_z_ucu_axes4_x*ucu_u_1_x +
+            axis_z_ucu_axes4_y*ucu_u_1_y + axis_z_ucu_axes4_z*ucu_u_1_z -
+            axis_z_ucu_axes4_x*gravity_x - axis_z_ucu_axes4_y*gravity_y -
+            axis_z_ucu_axes4_z*gravity_z;
+        /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+           about its reference point */
+        const real ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
+        const real ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
+        const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
+        const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y +
+            ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_h_4_in_spec4_x*(ucu_phi_4_o_t +
+            ucu_phi_4_o_t_2);
+        /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
+        const real ucu_J_4_in_spec4_xx = m->ucu_J_4_in_spec4_xx[i];
+        const real ucu_D_1_4 = ucu_J_4_in_spec4_xx*ucu_e_1_in_axes4_z +
+            ucu_J_4_in_spec4_xy*ucu_e_1_in_axes4_x + ucu_J_4_in_spec4_xz*ucu_e_1_in_axes4_y;
+        /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+           about the connection point */
+        const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
+        const real ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x;
+        const real ucu_J_4_in_spec4_yy = m->ucu_J_4_in_spec4_yy[i];
+        const real ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t;
+        const real ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y;
+        const real ucu_J_4_in_spec4_zz = m->ucu_J_4_in_spec4_zz[i];
+        const real ucu_Jc_2_t_4 = ucu_Jc_2_t_3 - ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x;
+        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
+        const real ucu_Jc_2_in_axes2_xy = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y -
+            ucu_J_2_in_spec2_xz - ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x;
+        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
+        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
+        const real ucu_Jc_2_in_axes1_xz = ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy +
+            ucu_J_4_in_axes2_xz) + ucu_h_4_t_11*(ucu_Jc_2_t_2*ucu_e_2_in_axes4_x +
+            ucu_Jc_2_t_4*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_yz);
         /* (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 4, about their reference points */
-        const real ucu_Sigma_4_yy = m->ucu_Sigma_4_yy[i];
-        const real ucu_Sigma_4_zz = m->ucu_Sigma_4_zz[i];
-        const real ucu_mu_4_o_x = ucu_B_4_o_yx*ucu_J_4_xy + ucu_B_4_o_zy*ucu_Sigma_4_yy +
-            ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) + ucu_acc_4_o_z*ucu_h_4_z -
-            ucu_B_4_o_yz*ucu_Sigma_4_zz - ucu_B_4_o_zx*ucu_J_4_yz - ucu_acc_4_o_y*ucu_h_4_x;
-        const real ucu_Sigma_4_xx = m->ucu_Sigma_4_xx[i];
-        const real ucu_mu_4_o_y = ucu_B_4_o_xz*ucu_Sigma_4_zz + ucu_B_4_o_zy*ucu_J_4_yz +
-            ucu_acc_4_o_x*ucu_h_4_x - ucu_B_4_o_xy*ucu_J_4_xz - ucu_B_4_o_zx*ucu_Sigma_4_xx -
-            ucu_J_4_xy*(ucu_W_2_t_4 - ucu_W_4_t) - ucu_acc_4_o_z*ucu_h_4_y;
-        const real ucu_mu_4_o_z = ucu_B_4_o_xz*ucu_J_4_xz + ucu_B_4_o_yx*ucu_Sigma_4_xx +
-            ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5) + ucu_acc_4_o_y*ucu_h_4_y -
-            ucu_B_4_o_xy*ucu_Sigma_4_yy - ucu_B_4_o_yz*ucu_J_4_xy - ucu_acc_4_o_x*ucu_h_4_z;
-        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
-        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
-        const real ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x;
-        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
-        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
-        const real ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y;
-        const real ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2;
-        /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ucu_B_2_o_xy = ucu_qdd_4_o_t_2 - ucu_W_2_xy;
-        const real ucu_B_2_o_yx = -ucu_W_2_xy - ucu_qdd_4_o_t_2;
-        const real ucu_B_2_o_zx = ucu_zeta_2_y - ucu_alpha_2_o_y;
-        const real ucu_B_2_o_zy = ucu_alpha_2_o_x - ucu_zeta_2_x;
+        const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
+        const real ucu_Sigma_4_in_axes4_yy = m->ucu_Sigma_4_in_axes4_yy[i];
+        const real ucu_Sigma_4_in_axes4_zz = m->ucu_Sigma_4_in_axes4_zz[i];
+        const real ucu_mu_4_o_in_axes4_x = ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy +
+            ucu_B_4_o_in_axes4_zy*ucu_Sigma_4_in_axes4_yy + ucu_J_4_in_spec4_xz*(ucu_phi_4_o_t_2 -
+            ucu_mu_4_o_t) + ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_z -
+            ucu_B_4_o_in_axes4_yz*ucu_Sigma_4_in_axes4_zz -
+            ucu_B_4_o_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_x;
+        const real ucu_Sigma_4_in_axes4_xx = m->ucu_Sigma_4_in_axes4_xx[i];
+        const real ucu_mu_4_o_in_axes4_y = ucu_B_4_o_in_axes4_xz*ucu_Sigma_4_in_axes4_zz +
+            ucu_B_4_o_in_axes4_zy*ucu_J_4_in_spec4_yz + ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_x
+            - ucu_B_4_o_in_axes4_xy*ucu_J_4_in_spec4_xz -
+            ucu_B_4_o_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_o_t -
+            ucu_mu_4_o_t) - ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_y;
+        const real ucu_mu_4_o_in_axes4_z = ucu_B_4_o_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            ucu_B_4_o_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_J_4_in_spec4_yz*(ucu_phi_4_o_t -
+            ucu_phi_4_o_t_2) + ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
+            ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z;
+        /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_4_t = -ucu_J_4_in_spec4_xx*ucu_o_4_in_axes4_x;
+        /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_4_t = ucu_J_4_in_spec4_xx*ucu_w_4_t_2;
+        const real ucu_d_Gamma_4_t_2 = inv_ucu_h_4_t_10*(ucu_J_4_in_axes2_xz -
+            ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z);
+        const real ucu_d_Gamma_4_t_3 =
+            inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_4_t_2*ucu_v_1_in_axes2_y - ucu_D_1_4 -
+            ucu_d_Gamma_4_t*ucu_w_4_t);
+        const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y -
+            ucu_h_4_in_spec4_z - ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x;
+        const real ucu_d_Gamma_4_in_axes4_y = ucu_h_4_in_spec4_y -
+            ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x - ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y;
         /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ucu_Sigma_2_yy = m->ucu_Sigma_2_yy[i];
-        const real ucu_Sigma_2_zz = m->ucu_Sigma_2_zz[i];
-        const real ucu_h_2_y = m->ucu_h_2_y[i];
-        const real ucu_h_2_z = m->ucu_h_2_z[i];
-        const real ucu_mu_2_o_x = ucu_B_2_o_yx*ucu_J_2_xy + ucu_B_2_o_zx*ucu_J_2_xz +
-            ucu_B_2_o_zy*ucu_Sigma_2_yy + ucu_Sigma_2_zz*ucu_alpha_1_o_t + ucu_g_r1_x*ucu_h_2_z +
-            ucu_g_r3_y*ucu_h_2_y - ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3);
-        const real ucu_Sigma_2_xx = m->ucu_Sigma_2_xx[i];
-        const real ucu_h_2_x = m->ucu_h_2_x[i];
-        const real ucu_mu_2_o_y = ucu_B_2_o_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x -
-            ucu_B_2_o_zx*ucu_Sigma_2_xx - ucu_B_2_o_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t -
-            ucu_W_2_t_3) - ucu_Sigma_2_zz*ucu_alpha_1_o_t_2 - ucu_g_r3_x*ucu_h_2_y;
-        const real ucu_mu_2_o_z = ucu_B_2_o_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_o_t +
-            ucu_J_2_yz*ucu_alpha_1_o_t_2 - ucu_B_2_o_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t -
-            ucu_W_2_t_2) - ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x;
+        const real ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
+        const real ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
+        const real ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2;
+        const real ucu_mu_2_t = m->ucu_mu_2_t[i];
+        const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
+        const real ucu_g_in_axes2_z = ucu_h_4_t_15*ucu_mu_2_t + ucu_h_4_t_16*ucu_mu_2_t_2;
+        const real ucu_mu_2_o_t_4 = ucu_h_4_t_15*ucu_mu_2_t_2 - ucu_h_4_t_16*ucu_mu_2_t;
+        const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
+        const real ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 +
+            ucu_h_4_t_11*ucu_mu_2_o_t_4;
+        const real ucu_g_in_axes2_y = ucu_h_4_t_11*ucu_mu_2_t_3 -
+            ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4;
+        const real ucu_Sigma_2_in_axes2_yy = m->ucu_Sigma_2_in_axes2_yy[i];
+        const real ucu_Sigma_2_in_axes2_zz = m->ucu_Sigma_2_in_axes2_zz[i];
+        const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
+        const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
+        const real ucu_mu_2_o_in_axes2_x = ucu_B_2_o_in_axes2_yx*ucu_J_2_in_spec2_xy +
+            ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
+            ucu_B_2_o_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
+            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_o_t_2 -
+            ucu_mu_2_o_t_3);
+        const real ucu_Sigma_2_in_axes2_xx = m->ucu_Sigma_2_in_axes2_xx[i];
+        const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
+        const real ucu_mu_2_o_in_axes2_y = ucu_B_2_o_in_axes2_xy*ucu_J_2_in_spec2_yz +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
+            - ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_o_t -
+            ucu_mu_2_o_t_3) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y;
+        const real ucu_mu_2_o_in_axes2_z = ucu_B_2_o_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
+            ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x -
+            ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_o_t -
+            ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
         /* (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real ucu_N_2_o_x = ucu_mu_2_o_x + ucu_mu_4_o_z;
-        const real ucu_N_2_o_y = ucu_mu_2_o_y + ucu_c_4*ucu_mu_4_o_x - ucu_mu_4_o_y*ucu_s_4;
-        const real ucu_N_2_o_z = ucu_mu_2_o_z + ucu_c_4*ucu_mu_4_o_y + ucu_mu_4_o_x*ucu_s_4;
-        /* (ucu-G_o) remainder without the acceleration in: force at the connection point that balances
+        const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
+        const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
+            ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x - ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y;
+        const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z +
+            ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x + ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
+        /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_2_in_axes4_x = ucu_J_4_in_axes2_xz*ucu_o_4_in_axes4_x;
+        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_w_4_t_2;
+        const real ucu_J_2_in_spec2_yy = m->ucu_J_2_in_spec2_yy[i];
+        const real ucu_d_Gamma_2_t_2 = inv_ucu_h_4_t_10*(ucu_J_2_in_spec2_yy +
+            ucu_e_2_in_axes4_x*(ucu_Jc_2_t_3 + ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) +
+            ucu_e_2_in_axes4_y*(ucu_Jc_2_t + ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y) -
+            ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z);
+        const real ucu_d_Gamma_2_in_axes2_z =
+            -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t_2*ucu_v_1_in_axes2_y - ucu_Jc_2_in_axes1_xz -
+            ucu_d_Gamma_2_t*ucu_w_4_t);
+        const real ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x;
+        const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y -
+            ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x;
+        /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real ucu_dalpha_Gamma_1_in_axes4_x = ucu_D_1_4*ucu_o_4_in_axes4_x;
+        /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_1_t = ucu_D_1_4*ucu_w_4_t_2;
+        const real ucu_d_Gamma_1_t_2 = inv_ucu_h_4_t_10*(ucu_Jc_2_in_axes1_xz -
+            ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z);
+        const real ucu_J_2_in_spec2_zz = m->ucu_J_2_in_spec2_zz[i];
+        const real ucu_Jc_2_in_axes2_xx = m->ucu_Jc_2_in_axes2_xx[i];
+        const real ucu_d_Gamma_1_t_3 = ucu_d_Gamma_1_t_2*ucu_v_1_in_axes2_y -
+            ucu_d_Gamma_1_t*ucu_w_4_t -
+            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z +
+            ucu_Jc_2_in_axes2_xy*ucu_h_4_t_11) -
+            ucu_h_4_t_11*(ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z +
+            ucu_h_4_t_11*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_2*ucu_e_2_in_axes4_y -
+            ucu_Jc_2_t_4*ucu_e_2_in_axes4_x));
+        const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_11;
+        const real ucu_d_Gamma_1_in_axes1_x = ucu_e_1_in_axes4_z*ucu_h_4_in_axes2_y -
+            inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 - ucu_h_4_in_spec4_x*ucu_h_4_t_11;
+        const real ucu_d_Gamma_1_in_axes1_y = ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y +
+            ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z;
+        const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_y*ucu_h_4_t_11 +
+            ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z;
+        const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_11 -
+            ucu_d_Gamma_1_in_axes1_y*ucu_e_1_in_axes4_z;
+        const real ucu_d_Gamma_1_in_axes4_y = ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_y -
+            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x;
+        /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real ucu_d_G_in_axes4_xz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x -
+            ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_x;
+        const real ucu_d_G_in_axes4_yz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_y -
+            ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_y;
+        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real ucu_dalpha_G_m1_in_axes4_x = -ucu_dalpha_Gamma_4_t*ucu_w_4_t_2;
+        const real ucu_dalpha_G_m1_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x +
+            axis_z_ucu_axes4_y*ucu_d_Gamma_4_t;
+        const real ucu_dalpha_G_m1_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x +
+            axis_z_ucu_axes4_z*ucu_d_Gamma_4_t;
+        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
            the leg's inertia and weight along all freedoms */
-        const real ucu_G_o_t = inv_ucu_end_p1_r5_x*ucu_mu_4_o_z;
-        const real ucu_G_o_t_2 = inv_ucu_root_2*(ucu_N_2_o_z + ucu_G_o_t*ucu_n_m1_t);
-        const real ucu_G_o_t_3 = inv_ucu_v_1_r0_y*(ucu_G_o_t*ucu_w_1_t_2 +
-            ucu_G_o_t_2*ucu_v_1_r0_x + ucu_N_2_o_y*ucu_c_2 - ucu_N_2_o_x*ucu_s_2);
+        const real ucu_d_G_m1_in_axes4_x = ucu_d_Gamma_4_in_axes4_x*ucu_w_4_t_2;
+        const real ucu_d_G_m1_in_axes4_y = ucu_d_Gamma_4_in_axes4_y*ucu_w_4_t_2;
+        const real ucu_d_G_m1_x = axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x +
+            axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y;
+        const real ucu_d_G_m1_y = axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x +
+            axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y;
+        const real ucu_d_G_m1_z = axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x +
+            axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y;
+        /* (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real ucu_G_m1_o = ucu_mu_4_o_in_axes4_z*ucu_w_4_t_2;
+        /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x;
+        const real ucu_d_G_m_xy = ucu_d_G_m1_y*ucu_n_m1_x;
+        const real ucu_d_G_m_xz = ucu_d_G_m1_z*ucu_n_m1_x;
+        const real ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y;
+        /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real ucu_dalpha_c_in_axes4_xx = ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x +
+            ucu_h_4_in_spec4_z*ucu_o_4_in_axes4_x -
+            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_x -
+            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_x;
+        const real ucu_dalpha_c_in_axes4_xz = ucu_h_4_in_spec4_z - ucu_D_1_4*ucu_w_1_in_axes4_x -
+            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_x - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_x;
+        const real ucu_dalpha_c_in_axes4_yx = ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y -
+            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_y -
+            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_y -
+            ucu_h_4_in_spec4_y*ucu_o_4_in_axes4_x;
+        const real ucu_dalpha_c_in_axes4_yz = -ucu_h_4_in_spec4_y - ucu_D_1_4*ucu_w_1_in_axes4_y -
+            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_y - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_y;
+        /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real ucu_d_c_in_axes4_xx = ucu_h_4_in_spec4_z*(ucu_w_4_in_axes4_x +
+            ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x) - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
+            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
+            ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_x +
+            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
+            ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
+            ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x);
+        const real ucu_d_c_in_axes4_xy = ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z -
+            ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x -
+            ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
+            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
+            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
+            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y);
+        const real ucu_d_c_in_axes4_yy = ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_x*ucu_w_1_in_axes4_y
+            + ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y
+            - ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
+            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
+            ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y;
         /* (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ucu_c_o_x = ucu_G_o_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) -
-            ucu_B_4_o_xy*ucu_h_4_z - ucu_B_4_o_xz*ucu_h_4_x - ucu_G_o_t_2*ucu_c_4;
-        const real ucu_c_o_y = ucu_G_o_t_2*ucu_s_4 + ucu_G_o_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4
-            + ucu_W_4_t) - ucu_B_4_o_yx*ucu_h_4_y - ucu_B_4_o_yz*ucu_h_4_x;
+        const real ucu_c_o_t = inv_ucu_h_4_t_10*(ucu_N_2_o_in_axes2_z -
+            ucu_G_m1_o*ucu_n_m1_in_axes2_z);
+        const real ucu_c_o_t_2 = inv_ucu_v_1_in_axes2_z*(ucu_c_o_t*ucu_v_1_in_axes2_y -
+            ucu_G_m1_o*ucu_w_4_t - ucu_N_2_o_in_axes2_x*ucu_e_1_in_axes4_z -
+            ucu_N_2_o_in_axes2_y*ucu_h_4_t_11);
+        const real ucu_c_o_in_axes4_x = ucu_c_o_t_2*ucu_e_2_in_axes4_x +
+            ucu_h_4_in_spec4_y*(ucu_mu_4_o_t + ucu_phi_4_o_t_2) -
+            ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x -
+            ucu_c_o_t*ucu_e_2_in_axes4_y;
+        const real ucu_c_o_in_axes4_y = ucu_c_o_t*ucu_e_2_in_axes4_x +
+            ucu_c_o_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
+            ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x;
+        /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ucu_Q_t = R(0.5)*ucu_d_c_in_axes4_xx;
+        const real ucu_Q_t_2 = R(0.5)*ucu_d_c_in_axes4_yy;
+        const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy
+            - axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz;
+        const real ucu_Q_t_4 = axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t
+            - axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy;
+        const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy
+            - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz;
+        const real ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz -
+            axis_y_ucu_axes4_x*ucu_Q_t_2;
+        const real ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 -
+            axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz;
+        const real ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 -
+            axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
+        const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6;
+        const real ucu_Q_xx = -2*ucu_Q_t_9;
+        const real ucu_Q_xy = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 -
+            axis_x_ucu_axes4_y*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_7;
+        const real ucu_Q_xz = axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 -
+            axis_x_ucu_axes4_z*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_8;
+        const real ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4;
+        const real ucu_Q_yy = -2*ucu_Q_t_10;
+        const real ucu_Q_yz = axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 -
+            axis_y_ucu_axes4_y*ucu_Q_t_8 - axis_y_ucu_axes4_z*ucu_Q_t_7;
+        const real ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8;
+        const real ucu_Q_zz = -2*ucu_Q_t_11;
+        /* (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
+           actuation */
+        const real ucu_c_m_o_in_axes4_x = -ucu_G_m1_o*ucu_n_m1_in_axes4_x;
         /* (ucu-U) velocity and gravity terms of the leg force */
-        const real ucu_U_in_base_x = ucu_axis_z_x*ucu_phi_4_o_z - axis_x_ucu_axes4_x*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_x*ucu_c_o_y;
-        const real ucu_U_in_base_y = ucu_axis_z_y*ucu_phi_4_o_z - axis_x_ucu_axes4_y*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_y*ucu_c_o_y;
-        const real ucu_U_in_base_z = ucu_axis_z_z*ucu_phi_4_o_z - axis_x_ucu_axes4_z*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_z*ucu_c_o_y;
-        /* (ucu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real ucu_G_m_o_x = ucu_G_o_t*ucu_end_p1_r3_x;
+        const real ucu_U_x = axis_z_ucu_axes4_x*ucu_phi_4_o_in_axes4_z -
+            axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y;
+        const real ucu_U_y = axis_z_ucu_axes4_y*ucu_phi_4_o_in_axes4_z -
+            axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y;
+        const real ucu_U_z = axis_z_ucu_axes4_z*ucu_phi_4_o_in_axes4_z -
+            axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
+        /* (M_ta) coupling block of M */
+        const real ucu_M_ta_t = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
+            axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx;
+        const real ucu_M_ta_t_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx +
+            axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx;
+        const real ucu_M_ta_t_3 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx +
+            axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx;
+        const real ucu_M_ta_t_4 = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz +
+            axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz;
+        const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz +
+            axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
+        const real ucu_M_ta_t_6 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
+            axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
+        const real ucu_M_ta_t_7 = -ucu_Q_xy*ucu_q_z;
+        const real ucu_M_ta_t_8 = ucu_Q_xz*ucu_q_y;
+        const real ucu_M_ta_t_9 = ucu_Q_yz*ucu_q_x;
+        const real ucu_M_ta_t_10 = ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
+            axis_z_ucu_axes4_x*ucu_M_ta_t_4;
+        const real ucu_M_ta_t_11 = ucu_Q_xx*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t -
+            axis_z_ucu_axes4_y*ucu_M_ta_t_4 - ucu_Q_xz*ucu_q_x;
+        const real ucu_M_ta_t_12 = ucu_Q_xy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t -
+            axis_z_ucu_axes4_z*ucu_M_ta_t_4 - ucu_Q_xx*ucu_q_y;
+        const real ucu_M_ta_t_13 = ucu_Q_yz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
+            axis_z_ucu_axes4_x*ucu_M_ta_t_5 - ucu_Q_yy*ucu_q_z;
+        const real ucu_M_ta_t_14 = ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
+            axis_z_ucu_axes4_y*ucu_M_ta_t_5;
+        const real ucu_M_ta_t_15 = ucu_Q_yy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
+            axis_z_ucu_axes4_z*ucu_M_ta_t_5 - ucu_Q_xy*ucu_q_y;
+        const real ucu_M_ta_t_16 = ucu_Q_zz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
+            axis_z_ucu_axes4_x*ucu_M_ta_t_6 - ucu_Q_yz*ucu_q_z;
+        const real ucu_M_ta_t_17 = ucu_Q_xz*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 -
+            axis_z_ucu_axes4_y*ucu_M_ta_t_6 - ucu_Q_zz*ucu_q_x;
+        const real ucu_M_ta_t_18 = ucu_M_ta_t_9 - ucu_M_ta_t_8 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
+            axis_z_ucu_axes4_z*ucu_M_ta_t_6;
+        /* (M_aa) rotational block of M */
+        const real ucu_M_aa_t = ucu_M_ta_t_16*ucu_q_y + ucu_d_G_m_xz*ucu_q_y +
+            ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x +
+            axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*ucu_q_z - ucu_d_G_m_xy*ucu_q_z;
+        const real ucu_M_aa_t_2 = ucu_M_ta_t_14*ucu_q_z + ucu_M_ta_t_17*ucu_q_y +
+            ucu_d_G_m_xx*ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*ucu_q_x;
+        const real ucu_M_aa_t_3 = ucu_M_ta_t_18*ucu_q_y + ucu_d_G_m_xy*ucu_q_x +
+            ucu_dalpha_G_m1_z*ucu_n_m1_x - ucu_M_ta_t_15*ucu_q_z - ucu_d_G_m_xx*ucu_q_y;
+        const real ucu_M_aa_t_4 = ucu_M_ta_t_11*ucu_q_z + ucu_d_G_m_yx*ucu_q_z +
+            ucu_dalpha_G_m1_y*ucu_n_m1_y - ucu_M_ta_t_17*ucu_q_x -
+            ucu_d_G_m1_z*ucu_n_m1_y*ucu_q_x;
+        const real ucu_M_aa_t_5 = ucu_M_ta_t_12*ucu_q_z + ucu_dalpha_G_m1_z*ucu_n_m1_y +
+            ucu_d_G_m1_y*ucu_n_m1_y*ucu_q_x - ucu_M_ta_t_18*ucu_q_x - ucu_d_G_m_yx*ucu_q_y;
+        const real ucu_M_aa_t_6 = ucu_M_ta_t_15*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_z +
+            ucu_d_G_m1_y*ucu_n_m1_z*ucu_q_x - ucu_M_ta_t_12*ucu_q_y -
+            ucu_d_G_m1_x*ucu_n_m1_z*ucu_q_y;
         /* (Z_a) rotational part of Z */
-        const real ucu_Z_a_t = ucu_U_in_base_z*ucu_q_in_base_y + ucu_axis_z_x*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_x*ucu_G_m_o_x - ucu_U_in_base_y*ucu_q_in_base_z;
-        const real ucu_Z_a_t_2 = ucu_U_in_base_x*ucu_q_in_base_z + ucu_axis_z_y*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_y*ucu_G_m_o_x - ucu_U_in_base_z*ucu_q_in_base_x;
-        const real ucu_Z_a_t_3 = ucu_U_in_base_y*ucu_q_in_base_x + ucu_axis_z_z*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_z*ucu_G_m_o_x - ucu_U_in_base_x*ucu_q_in_base_y;
+        const real ucu_Z_a_t = axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z + ucu_U_z*ucu_q_y -
+            axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*ucu_q_z;
+        const real ucu_Z_a_t_2 = axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z + ucu_U_x*ucu_q_z -
+            axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*ucu_q_x;
+        const real ucu_Z_a_t_3 = axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z + ucu_U_y*ucu_q_x -
+            axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*ucu_q_y;
         /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        const real ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z;
-        const real ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x;
-        const real ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ucu_Q_t_10 : ucu_Q_t_10;  /* total_ucu_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ucu_Q_t_11 : ucu_Q_t_11;  /* total_ucu_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ucu_Q_t_12 : ucu_Q_t_12;  /* total_ucu_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ucu_Q_t_14 : ucu_Q_t_14;  /* total_ucu_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ucu_Q_t_15 : ucu_Q_t_15;  /* total_ucu_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ucu_Q_t_17 : ucu_Q_t_17;  /* total_ucu_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + ucu_M_ta_t_4 : ucu_M_ta_t_4;  /* total_ucu_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + ucu_M_ta_t_5 : ucu_M_ta_t_5;  /* total_ucu_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + ucu_M_ta_t_6 : ucu_M_ta_t_6;  /* total_ucu_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + ucu_M_ta_t_7 : ucu_M_ta_t_7;  /* total_ucu_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + ucu_M_ta_t_8 : ucu_M_ta_t_8;  /* total_ucu_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + ucu_M_ta_t_9 : ucu_M_ta_t_9;  /* total_ucu_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + ucu_M_ta_t_10 : ucu_M_ta_t_10;  /* total_ucu_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + ucu_M_ta_t_11 : ucu_M_ta_t_11;  /* total_ucu_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + ucu_M_ta_t_12 : ucu_M_ta_t_12;  /* total_ucu_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + ucu_M_aa_t : ucu_M_aa_t;  /* total_ucu_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + ucu_M_aa_t_2 : ucu_M_aa_t_2;  /* total_ucu_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + ucu_M_aa_t_3 : ucu_M_aa_t_3;  /* total_ucu_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + ucu_M_aa_t_4 : ucu_M_aa_t_4;  /* total_ucu_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + ucu_M_aa_t_5 : ucu_M_aa_t_5;  /* total_ucu_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + ucu_M_aa_t_6 : ucu_M_aa_t_6;  /* total_ucu_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + ucu_U_in_base_x : ucu_U_in_base_x;  /* total_ucu_x */
-        terms[22*count + k] = add ? terms[22*count + k] + ucu_U_in_base_y : ucu_U_in_base_y;  /* total_ucu_y */
-        terms[23*count + k] = add ? terms[23*count + k] + ucu_U_in_base_z : ucu_U_in_base_z;  /* total_ucu_z */
-        terms[24*count + k] = add ? terms[24*count + k] + ucu_Z_a_t : ucu_Z_a_t;  /* total_ucu_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + ucu_Z_a_t_2 : ucu_Z_a_t_2;  /* total_ucu_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + ucu_Z_a_t_3 : ucu_Z_a_t_3;  /* total_ucu_z_2 */
-        o[0*count + k] = ucu_axis_z_x;
-        o[1*count + k] = ucu_axis_z_y;
-        o[2*count + k] = ucu_axis_z_z;
-        o[3*count + k] = ucu_H_a_3_t;
-        o[4*count + k] = ucu_H_a_3_t_2;
-        o[5*count + k] = ucu_H_a_3_t_3;
-        o[7*count + k] = (ucu_axis_z_x + (ucu_axis_z_y + ucu_axis_z_z)) + (ucu_H_a_3_t +
-            (ucu_H_a_3_t_2 + ucu_H_a_3_t_3));
-        o[6*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
-            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
-            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+        const real ucu_H_a_3_x = axis_z_ucu_axes4_z*ucu_q_y - axis_z_ucu_axes4_y*ucu_q_z;
+        const real ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x;
+        const real ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_Q_xx : ucu_Q_xx;  /* M_tt_ucu_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ucu_Q_xy : ucu_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ucu_Q_xz : ucu_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ucu_Q_yy : ucu_Q_yy;  /* M_tt_ucu_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ucu_Q_yz : ucu_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ucu_Q_zz : ucu_Q_zz;  /* M_tt_ucu_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + ucu_M_ta_t_10 : ucu_M_ta_t_10;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + ucu_M_ta_t_11 : ucu_M_ta_t_11;  /* M_ta_ucu_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + ucu_M_ta_t_12 : ucu_M_ta_t_12;  /* M_ta_ucu_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + ucu_M_ta_t_13 : ucu_M_ta_t_13;  /* M_ta_ucu_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ucu_M_ta_t_14 : ucu_M_ta_t_14;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + ucu_M_ta_t_15 : ucu_M_ta_t_15;  /* M_ta_ucu_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + ucu_M_ta_t_16 : ucu_M_ta_t_16;  /* M_ta_ucu_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ucu_M_ta_t_17 : ucu_M_ta_t_17;  /* M_ta_ucu_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ucu_M_ta_t_18 : ucu_M_ta_t_18;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + ucu_M_aa_t : ucu_M_aa_t;  /* M_aa_ucu_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + ucu_M_aa_t_2 : ucu_M_aa_t_2;  /* M_aa_ucu_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + ucu_M_aa_t_3 : ucu_M_aa_t_3;  /* M_aa_ucu_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + ucu_M_aa_t_4 : ucu_M_aa_t_4;  /* M_aa_ucu_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + ucu_M_aa_t_5 : ucu_M_aa_t_5;  /* M_aa_ucu_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + ucu_M_aa_t_6 : ucu_M_aa_t_6;  /* M_aa_ucu_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + ucu_U_x : ucu_U_x;  /* Z_t_ucu_x */
+        terms[22*count + k] = add ? terms[22*count + k] + ucu_U_y : ucu_U_y;  /* Z_t_ucu_y */
+        terms[23*count + k] = add ? terms[23*count + k] + ucu_U_z : ucu_U_z;  /* Z_t_ucu_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + ucu_Z_a_t : ucu_Z_a_t;  /* Z_a_ucu_x */
+        terms[25*count + k] = add ? terms[25*count + k] + ucu_Z_a_t_2 : ucu_Z_a_t_2;  /* Z_a_ucu_y */
+        terms[26*count + k] = add ? terms[26*count + k] + ucu_Z_a_t_3 : ucu_Z_a_t_3;  /* Z_a_ucu_z */
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        o[0*count + k] = axis_z_ucu_axes4_x;
+        o[1*count + k] = axis_z_ucu_axes4_y;
+        o[2*count + k] = axis_z_ucu_axes4_z;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        o[3*count + k] = ucu_H_a_3_x;
+        o[4*count + k] = ucu_H_a_3_y;
+        o[5*count + k] = ucu_H_a_3_z;
+        o[7*count + k] = (axis_z_ucu_axes4_x + (axis_z_ucu_axes4_y + axis_z_ucu_axes4_z)) +
+            (ucu_H_a_3_x + (ucu_H_a_3_y + ucu_H_a_3_z));
+        o[6*count + k] = UNLESS(magnitude(ucu_h_4_t_6) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(ucu_h_4_t_9) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(ucu_h_4_t_18) >
+            TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(ucu_end_p1_in_axes4_x) > TOLERANCE*1) +
+            UNLESS(magnitude(ucu_h_4_t_10) > TOLERANCE*R(0.8)) +
+            UNLESS(magnitude(ucu_v_1_in_axes2_z) > TOLERANCE*R(0.8));
     }
 }
 
@@ -2149,101 +2214,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_ucu_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_ucu_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_ucu_xx;
-        const real total_ucu_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_ucu_yy;
-        const real total_ucu_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_ucu_zz;
+        const real M_tt_xx = M_tt_ucu_xx + m_star;
+        const real M_tt_ucu_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_ucu_yy + m_star;
+        const real M_tt_ucu_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_ucu_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_ucu_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_ucu_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_ucu_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_ucu_xz_2 - h_star_in_base_y;
-        const real total_ucu_yx = sums[9*w + k];
-        const real M_ta_yx = total_ucu_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_ucu_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_ucu_yz_2;
-        const real total_ucu_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_ucu_zx;
-        const real total_ucu_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_ucu_zy;
+        const real M_ta_ucu_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_ucu_xy + h_star_z;
+        const real M_ta_ucu_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_ucu_xz - h_star_y;
+        const real M_ta_ucu_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_ucu_yx - h_star_z;
+        const real M_ta_ucu_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_ucu_yz + h_star_x;
+        const real M_ta_ucu_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_ucu_zx + h_star_y;
+        const real M_ta_ucu_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_ucu_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_ucu_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_ucu_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_ucu_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_ucu_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_ucu_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_ucu_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_ucu_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 + total_ucu_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_ucu_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_ucu_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_ucu_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_ucu_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_ucu_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_ucu_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_ucu_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_ucu_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_ucu_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_ucu_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_ucu_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_ucu_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_ucu_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_ucu_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_ucu_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_ucu_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_ucu_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_ucu_x;
+        const real Z_t_ucu_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_ucu_x;
         const real Z_p_y = s[28*w + k];
-        const real total_ucu_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_ucu_y;
+        const real Z_t_ucu_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_ucu_y;
         const real Z_p_z = s[29*w + k];
-        const real total_ucu_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_ucu_z;
+        const real Z_t_ucu_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_ucu_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_ucu_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_ucu_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_ucu_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_ucu_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_ucu_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_ucu_z_2;
+        const real Z_a_ucu_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_ucu_x + Z_q_x;
+        const real Z_a_ucu_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_ucu_y + Z_q_y;
+        const real Z_a_ucu_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_ucu_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_ucu_xy = sums[1*w + k];
-        M[1*w + k] = -total_ucu_xy;
-        M[6*w + k] = -total_ucu_xy;
-        const real total_ucu_xz = sums[2*w + k];
-        M[2*w + k] = -total_ucu_xz;
-        M[12*w + k] = -total_ucu_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_ucu_yz = sums[4*w + k];
-        M[8*w + k] = -total_ucu_yz;
-        M[13*w + k] = -total_ucu_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_ucu_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_ucu_xx_2;
-        M[18*w + k] = total_ucu_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_ucu_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_ucu_yy_2;
-        M[25*w + k] = -total_ucu_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_ucu_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_ucu_zz_2;
-        M[32*w + k] = -total_ucu_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2253,17 +2321,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_ucu_xy + total_ucu_xz)) + (M_tt_yy + (total_ucu_yz +
-            M_tt_zz))) + ((total_ucu_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_ucu_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_ucu_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -2334,37 +2403,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2377,15 +2452,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2396,415 +2471,417 @@ INLINE void M_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
+        /* (ucu-h_4) first moment of link 4 about the connection point */
         const real R_xx = s[3*w + j];
         const real R_xy = s[4*w + j];
         const real R_xz = s[5*w + j];
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
+        const real ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z;
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
         const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
+        const real ucu_h_4_t_4 = ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3;
         const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
         const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
         const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
+        const real ucu_h_4_t_5 = ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3;
+        const real ucu_h_4_t_6 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5;
         const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_h_4_t_7 = ucu_branch_1*root(ucu_h_4_t_6);
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
+        const real ucu_h_4_t_8 = ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3;
+        const real ucu_h_4_t_9 = ucu_h_4_t_6 + ucu_h_4_t_8*ucu_h_4_t_8;
         const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
-        /* (ucu-px_4) component along the reference direction */
+        const real ucu_h_4_t_10 = ucu_branch_2*root(ucu_h_4_t_9);
+        const real inv_ucu_h_4_t_10 = 1/ucu_h_4_t_10;
+        const real ucu_h_4_t_11 = -inv_ucu_h_4_t_10*ucu_h_4_t_7;
+        const real ucu_e_1_in_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_8;
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_h_4_t_12 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_h_4_t_13 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_h_4_t_14 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
-        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
+        const real inv_ucu_h_4_t_7 = 1/ucu_h_4_t_7;
+        const real ucu_h_4_t_15 = -inv_ucu_h_4_t_7*ucu_h_4_t_5;
+        const real ucu_h_4_t_16 = inv_ucu_h_4_t_7*ucu_h_4_t_4;
+        const real ucu_end_p1_in_turn4_y = ucu_h_4_t_12*ucu_h_4_t_15 + ucu_h_4_t_13*ucu_h_4_t_16;
+        const real ucu_h_4_t_17 = ucu_h_4_t_12*ucu_h_4_t_16 - ucu_h_4_t_13*ucu_h_4_t_15;
+        const real ucu_end_p1_in_turn4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_17 +
+            ucu_h_4_t_11*ucu_h_4_t_14;
+        const real ucu_h_4_t_18 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
+            ucu_end_p1_in_turn4_y*ucu_end_p1_in_turn4_y;
         const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
-        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
-        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
-        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
-        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
-        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
-        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
-            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
-            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
-            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
-        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
-        const real ucu_w_1_t_3 = inv_ucu_v_1_r0_y*ucu_s_4;
-        const real ucu_w_1_t_4 = inv_ucu_v_1_r0_y*ucu_c_4;
-        /* (ucu-w_2) force part of reciprocal wrench 2 */
-        const real ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_r0_y*ucu_v_1_r0_x;
-        const real ucu__r1_x = inv_ucu_root_2*ucu_c_4 - ucu_s_4*ucu_w_2_t;
-        const real ucu__r1_y = -inv_ucu_root_2*ucu_s_4 - ucu_c_4*ucu_w_2_t;
-        /* (ucu-w_4) force part of reciprocal wrench 4 */
-        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
-        const real ucu_w_4_t = inv_ucu_end_p1_r5_x*inv_ucu_root_2*ucu_n_m1_t;
-        const real ucu_w_4_t_2 = inv_ucu_v_1_r0_y*(inv_ucu_end_p1_r5_x*ucu_w_1_t_2 +
-            ucu_v_1_r0_x*ucu_w_4_t);
-        const real ucu__r1_x_2 = ucu_c_4*ucu_w_4_t - ucu_s_4*ucu_w_4_t_2;
-        const real ucu__r1_y_2 = -ucu_c_4*ucu_w_4_t_2 - ucu_s_4*ucu_w_4_t;
-        /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real ucu_d_alpha_4_zy = ucu__r1_y_2 + ucu_s_2*ucu_w_1_t_4;
-        /* (ucu-L_c_4) moment about joint 4 that accelerates joint 4, per unit */
-        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
-        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
-        const real ucu_L_c_4_r0_y = ucu_J_4_xy*ucu_s_4 + ucu_J_4_xz*ucu_c_4;
-        /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
-        const real ucu_J_4_xx = m->ucu_J_4_xx[i];
-        const real ucu_D_1_4 = ucu_J_4_xx*ucu_s_2 + ucu_J_4_xz*ucu_v_1_t_2 - ucu_J_4_xy*ucu_v_1_t;
-        /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_4_t = inv_ucu_end_p1_r5_x*ucu_J_4_xx;
-        const real ucu_d_Gamma_4_t_2 = inv_ucu_root_2*(ucu_L_c_4_r0_y +
-            ucu_d_Gamma_4_t*ucu_n_m1_t);
-        const real ucu_d_Gamma_4_t_3 = inv_ucu_v_1_r0_y*(ucu_d_Gamma_4_t*ucu_w_1_t_2 +
-            ucu_d_Gamma_4_t_2*ucu_v_1_r0_x - ucu_D_1_4);
-        const real ucu_h_4_z = m->ucu_h_4_z[i];
-        const real ucu_d_Gamma_4_x = ucu_c_4*ucu_d_Gamma_4_t_2 - ucu_h_4_z -
-            ucu_d_Gamma_4_t_3*ucu_s_4;
-        const real ucu_h_4_y = m->ucu_h_4_y[i];
-        const real ucu_d_Gamma_4_y = ucu_h_4_y - ucu_c_4*ucu_d_Gamma_4_t_3 -
-            ucu_d_Gamma_4_t_2*ucu_s_4;
+        const real ucu_h_4_t_19 = ucu_branch_4*root(ucu_h_4_t_18);
+        const real inv_ucu_h_4_t_19 = 1/ucu_h_4_t_19;
+        const real ucu_e_2_in_axes4_y = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_x;
+        const real ucu_e_2_in_axes4_x = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_y;
+        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
+        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
+        const real ucu_h_4_in_axes2_y = ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z;
         /* (ucu-J_4) inertia tensor of link 4 about the connection point */
-        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
-        const real ucu_J_4_t = ucu_J_4_yz*ucu_s_4;
-        const real ucu_J_4_yy = m->ucu_J_4_yy[i];
-        const real ucu__x = ucu_J_4_yy*ucu_c_4 - ucu_J_4_t;
-        const real ucu_J_4_t_2 = ucu_J_4_yz*ucu_c_4;
-        const real ucu_J_4_zz = m->ucu_J_4_zz[i];
-        const real ucu__x_2 = ucu_J_4_t_2 - ucu_J_4_zz*ucu_s_4;
+        const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
+        const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
+        const real ucu_J_4_in_axes2_xz = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x +
+            ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_e_1_in_axes4_x = ucu_e_2_in_axes4_y*ucu_h_4_t_11;
+        const real ucu_e_1_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_h_4_t_11;
+        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_10;
+        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_h_4_t_10;
+        const real ucu_v_1_in_axes2_y = ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x -
+            ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y;
+        const real ucu_v_1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_14 -
+            ucu_h_4_t_11*ucu_h_4_t_17;
+        const real axis_z_ucu_axes4_x = inv_ucu_h_4_t_10*ucu_h_4_t;
+        const real axis_z_ucu_axes4_y = inv_ucu_h_4_t_10*ucu_h_4_t_2;
+        const real axis_z_ucu_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_3;
+        const real ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x;
+        const real ucu_n_m1_t_2 = ucu_e_2_in_axes4_y*ucu_h_4_t_15 - ucu_h_4_t_16*ucu_n_m1_t;
+        const real ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_16 + ucu_h_4_t_15*ucu_n_m1_t;
+        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_n_m1_t_2 +
+            ucu_base_frame_xy*ucu_n_m1_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_n_m1_t_2 +
+            ucu_base_frame_yy*ucu_n_m1_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_n_m1_t_2 +
+            ucu_base_frame_zy*ucu_n_m1_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*axis_z_ucu_axes4_z -
+            axis_y_ucu_axes4_z*axis_z_ucu_axes4_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*axis_z_ucu_axes4_x -
+            axis_y_ucu_axes4_x*axis_z_ucu_axes4_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*axis_z_ucu_axes4_y -
+            axis_y_ucu_axes4_y*axis_z_ucu_axes4_x;
+        const real ucu_end_p1_in_axes4_x = ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_y +
+            ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x;
+        const real ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_n_m1_x = axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x -
+            axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x;
+        const real ucu_n_m1_y = axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x -
+            axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x;
+        const real ucu_n_m1_z = axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x -
+            axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
+        const real ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x;
+        const real ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y;
+        /* (ucu-w_2) force part of reciprocal wrench 2 */
+        const real ucu_w_2_t = inv_ucu_h_4_t_10*inv_ucu_v_1_in_axes2_z*ucu_v_1_in_axes2_y;
+        const real ucu_w_2_in_axes4_x = inv_ucu_h_4_t_10*ucu_e_2_in_axes4_y -
+            ucu_e_2_in_axes4_x*ucu_w_2_t;
+        const real ucu_w_2_in_axes4_y = -inv_ucu_h_4_t_10*ucu_e_2_in_axes4_x -
+            ucu_e_2_in_axes4_y*ucu_w_2_t;
+        /* (ucu-w_4) force part of reciprocal wrench 4 */
+        const real ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x -
+            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_w_4_t_2 = -1/ucu_end_p1_in_axes4_x;
+        const real ucu_w_4_t_3 = -inv_ucu_h_4_t_10*ucu_n_m1_in_axes2_z*ucu_w_4_t_2;
+        const real ucu_w_4_t_4 = inv_ucu_v_1_in_axes2_z*(ucu_v_1_in_axes2_y*ucu_w_4_t_3 -
+            ucu_w_4_t*ucu_w_4_t_2);
+        const real ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_3 -
+            ucu_e_2_in_axes4_x*ucu_w_4_t_4;
+        const real ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_3 -
+            ucu_e_2_in_axes4_y*ucu_w_4_t_4;
+        /* (ucu-o_4) moment part of reciprocal wrench 4 */
+        const real ucu_o_4_in_axes4_x = ucu_n_m1_in_axes4_x*ucu_w_4_t_2;
+        /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
+        const real ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y +
+            ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y;
+        /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
+        const real ucu_J_4_in_spec4_xx = m->ucu_J_4_in_spec4_xx[i];
+        const real ucu_D_1_4 = ucu_J_4_in_spec4_xx*ucu_e_1_in_axes4_z +
+            ucu_J_4_in_spec4_xy*ucu_e_1_in_axes4_x + ucu_J_4_in_spec4_xz*ucu_e_1_in_axes4_y;
         /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
-        const real ucu_Jc_2_xy = ucu_J_4_xy*ucu_c_4 - ucu_J_2_xz - ucu_J_4_xz*ucu_s_4;
-        /* (ucu-L_c_2) moment about joint 2 that accelerates joint 2, per unit */
-        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
-        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
-        const real ucu_L_c_2_r0_y = ucu_s_2*(ucu_J_2_xy + ucu_L_c_4_r0_y) -
-            ucu_c_2*(ucu__x*ucu_s_4 + ucu__x_2*ucu_c_4 - ucu_J_2_yz);
-        /* (ucu-h_4) first moment of link 4 about the connection point */
-        const real ucu_h_4_r1_x = ucu_c_4*ucu_h_4_y - ucu_h_4_z*ucu_s_4;
-        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_2_t = inv_ucu_end_p1_r5_x*ucu_L_c_4_r0_y;
-        const real ucu_J_2_yy = m->ucu_J_2_yy[i];
-        const real ucu_d_Gamma_2_t_2 = inv_ucu_root_2*(ucu_J_2_yy + ucu_c_4*(ucu_J_4_t +
-            ucu_J_4_zz*ucu_c_4) + ucu_d_Gamma_2_t*ucu_n_m1_t + ucu_s_4*(ucu_J_4_t_2 +
-            ucu_J_4_yy*ucu_s_4));
-        const real ucu_d_Gamma_2_t_3 = inv_ucu_v_1_r0_y*(ucu_d_Gamma_2_t*ucu_w_1_t_2 +
-            ucu_d_Gamma_2_t_2*ucu_v_1_r0_x - ucu_L_c_2_r0_y);
-        const real ucu_h_4_x = m->ucu_h_4_x[i];
-        const real ucu_d_Gamma_2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_x;
-        /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_1_t = inv_ucu_end_p1_r5_x*ucu_D_1_4;
-        const real ucu_d_Gamma_1_t_2 = inv_ucu_root_2*(ucu_L_c_2_r0_y +
-            ucu_d_Gamma_1_t*ucu_n_m1_t);
-        const real ucu_J_2_zz = m->ucu_J_2_zz[i];
-        const real ucu_Jc_2_xx = m->ucu_Jc_2_xx[i];
-        const real ucu_d_Gamma_1_t_3 = ucu_c_2*(ucu_Jc_2_xy*ucu_s_2 - ucu_c_2*(ucu_J_2_zz +
-            ucu__x*ucu_c_4 - ucu__x_2*ucu_s_4)) + ucu_d_Gamma_1_t*ucu_w_1_t_2 +
-            ucu_d_Gamma_1_t_2*ucu_v_1_r0_x - ucu_s_2*(ucu_Jc_2_xx*ucu_s_2 - ucu_Jc_2_xy*ucu_c_2);
-        const real ucu_d_Gamma_1_t_4 = ucu_c_2*ucu_d_Gamma_1_t_2;
-        const real ucu_d_Gamma_1_x = ucu_c_2*ucu_h_4_x + ucu_h_4_r1_x*ucu_s_2 -
-            inv_ucu_v_1_r0_y*ucu_d_Gamma_1_t_3;
-        const real ucu_d_Gamma_1_y = ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 -
-            ucu_d_Gamma_1_t_2*ucu_s_2;
-        const real ucu_d_Gamma_1_r1_x = -ucu_c_2*ucu_d_Gamma_1_y - ucu_d_Gamma_1_t_4*ucu_s_2;
-        const real ucu_d_Gamma_1_r1_y = ucu_c_2*ucu_d_Gamma_1_t_4 - ucu_d_Gamma_1_y*ucu_s_2;
-        const real ucu_d_Gamma_1_r3_y = ucu_c_4*ucu_d_Gamma_1_x - ucu_d_Gamma_1_r1_y*ucu_s_4;
-        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_2_r1_y = -ucu_c_4*ucu_d_Gamma_2_t_3 - ucu_d_Gamma_2_y*ucu_s_4;
-        /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real ucu_d_G_xz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_3 - ucu__r1_x*ucu_h_4_r1_x;
-        const real ucu_d_G_yz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_4 - ucu__r1_y*ucu_h_4_r1_x;
-        /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ucu_d_c_xx = ucu_h_4_z*(ucu__r1_x_2 + ucu_s_2*ucu_w_1_t_3) -
-            ucu__r1_x*(ucu_c_4*ucu_d_Gamma_2_y - ucu_d_Gamma_2_t_3*ucu_s_4) -
-            ucu__r1_x_2*ucu_d_Gamma_4_x - ucu_h_4_x*(ucu__r1_x*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_3)
-            - ucu_w_1_t_3*(ucu_c_4*ucu_d_Gamma_1_r1_y + ucu_d_Gamma_1_x*ucu_s_4);
-        const real ucu_d_c_xy = ucu_d_alpha_4_zy*ucu_h_4_z - ucu__r1_x*ucu_d_Gamma_2_r1_y -
-            ucu__r1_x_2*ucu_d_Gamma_4_y - ucu_d_Gamma_1_r3_y*ucu_w_1_t_3 -
-            ucu_h_4_x*(ucu__r1_y*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_4);
-        const real ucu_d_c_yy = ucu_h_4_x*(ucu__r1_y*ucu_s_4 - ucu_v_1_t*ucu_w_1_t_4) -
-            ucu__r1_y*ucu_d_Gamma_2_r1_y - ucu__r1_y_2*ucu_d_Gamma_4_y -
-            ucu_d_Gamma_1_r3_y*ucu_w_1_t_4 - ucu_d_alpha_4_zy*ucu_h_4_y;
-        /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ucu_Q_t = R(0.5)*ucu_d_c_xx;
-        const real ucu_Q_t_2 = R(0.5)*ucu_d_c_yy;
-        const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_in_base_x*ucu_d_c_xy
-            - ucu_axis_z_x*ucu_d_G_xz;
-        const real ucu_Q_t_4 = axis_x_ucu_axes4_y*ucu_Q_t + axis_y_ucu_axes4_in_base_y*ucu_d_c_xy
-            - ucu_axis_z_y*ucu_d_G_xz;
-        const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_in_base_z*ucu_d_c_xy
-            - ucu_axis_z_z*ucu_d_G_xz;
-        const real ucu_Q_t_6 = axis_y_ucu_axes4_in_base_x*ucu_Q_t_2 - ucu_axis_z_x*ucu_d_G_yz;
-        const real ucu_Q_t_7 = axis_y_ucu_axes4_in_base_y*ucu_Q_t_2 - ucu_axis_z_y*ucu_d_G_yz;
-        const real ucu_Q_t_8 = axis_y_ucu_axes4_in_base_z*ucu_Q_t_2 - ucu_axis_z_z*ucu_d_G_yz;
-        const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_6;
-        const real ucu_Q_t_10 = 2*ucu_Q_t_9;
-        const real ucu_Q_t_11 = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_x_ucu_axes4_y*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_7 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_6;
-        const real ucu_Q_t_12 = axis_x_ucu_axes4_x*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_6;
-        const real ucu_Q_t_13 = axis_x_ucu_axes4_y*ucu_Q_t_4 +
-            axis_y_ucu_axes4_in_base_y*ucu_Q_t_7;
-        const real ucu_Q_t_14 = 2*ucu_Q_t_13;
-        const real ucu_Q_t_15 = axis_x_ucu_axes4_y*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_4 +
-            axis_y_ucu_axes4_in_base_y*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_7;
-        const real ucu_Q_t_16 = axis_x_ucu_axes4_z*ucu_Q_t_5 +
-            axis_y_ucu_axes4_in_base_z*ucu_Q_t_8;
-        const real ucu_Q_t_17 = 2*ucu_Q_t_16;
-        /* (ucu-o_4) moment part of reciprocal wrench 4 */
-        const real ucu_o_4_x = inv_ucu_end_p1_r5_x*ucu_end_p1_r3_x;
+        const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
+        const real ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x;
+        const real ucu_J_4_in_spec4_yy = m->ucu_J_4_in_spec4_yy[i];
+        const real ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t;
+        const real ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y;
+        const real ucu_J_4_in_spec4_zz = m->ucu_J_4_in_spec4_zz[i];
+        const real ucu_Jc_2_t_4 = ucu_Jc_2_t_3 - ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x;
+        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
+        const real ucu_Jc_2_in_axes2_xy = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y -
+            ucu_J_2_in_spec2_xz - ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x;
+        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
+        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
+        const real ucu_Jc_2_in_axes1_xz = ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy +
+            ucu_J_4_in_axes2_xz) + ucu_h_4_t_11*(ucu_Jc_2_t_2*ucu_e_2_in_axes4_x +
+            ucu_Jc_2_t_4*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_yz);
         /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
            links' inertia and weight */
-        const real ucu_dalpha_Gamma_4_t = ucu_J_4_xx*ucu_o_4_x;
+        const real ucu_dalpha_Gamma_4_t = -ucu_J_4_in_spec4_xx*ucu_o_4_in_axes4_x;
+        /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_4_t = ucu_J_4_in_spec4_xx*ucu_w_4_t_2;
+        const real ucu_d_Gamma_4_t_2 = inv_ucu_h_4_t_10*(ucu_J_4_in_axes2_xz -
+            ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z);
+        const real ucu_d_Gamma_4_t_3 =
+            inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_4_t_2*ucu_v_1_in_axes2_y - ucu_D_1_4 -
+            ucu_d_Gamma_4_t*ucu_w_4_t);
+        const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y -
+            ucu_h_4_in_spec4_z - ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x;
+        const real ucu_d_Gamma_4_in_axes4_y = ucu_h_4_in_spec4_y -
+            ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x - ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y;
         /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
-        const real ucu_dalpha_Gamma_2_t = ucu_L_c_4_r0_y*ucu_o_4_x;
+        const real ucu_dalpha_Gamma_2_in_axes4_x = ucu_J_4_in_axes2_xz*ucu_o_4_in_axes4_x;
+        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_w_4_t_2;
+        const real ucu_J_2_in_spec2_yy = m->ucu_J_2_in_spec2_yy[i];
+        const real ucu_d_Gamma_2_t_2 = inv_ucu_h_4_t_10*(ucu_J_2_in_spec2_yy +
+            ucu_e_2_in_axes4_x*(ucu_Jc_2_t_3 + ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) +
+            ucu_e_2_in_axes4_y*(ucu_Jc_2_t + ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y) -
+            ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z);
+        const real ucu_d_Gamma_2_in_axes2_z =
+            -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t_2*ucu_v_1_in_axes2_y - ucu_Jc_2_in_axes1_xz -
+            ucu_d_Gamma_2_t*ucu_w_4_t);
+        const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
+        const real ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x;
+        const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y -
+            ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x;
         /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
            links' inertia and weight */
-        const real ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_x;
-        /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ucu_dalpha_c_xx = ucu__r1_x*ucu_dalpha_Gamma_2_t +
-            ucu__r1_x_2*ucu_dalpha_Gamma_4_t + ucu_dalpha_Gamma_1_t*ucu_w_1_t_3 -
-            ucu_h_4_z*ucu_o_4_x;
-        const real ucu_dalpha_c_xz = ucu_h_4_z - ucu_D_1_4*ucu_w_1_t_3 - ucu_J_4_xx*ucu__r1_x_2 -
-            ucu_L_c_4_r0_y*ucu__r1_x;
-        const real ucu_dalpha_c_yx = ucu__r1_y*ucu_dalpha_Gamma_2_t +
-            ucu__r1_y_2*ucu_dalpha_Gamma_4_t + ucu_dalpha_Gamma_1_t*ucu_w_1_t_4 +
-            ucu_h_4_y*ucu_o_4_x;
-        const real ucu_dalpha_c_yz = -ucu_h_4_y - ucu_D_1_4*ucu_w_1_t_4 - ucu_J_4_xx*ucu__r1_y_2 -
-            ucu_L_c_4_r0_y*ucu__r1_y;
-        const real ucu_dalpha_c_in_base_x = axis_x_ucu_axes4_x*ucu_dalpha_c_xx +
-            axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yx;
-        const real ucu_dalpha_c_in_base_y = axis_x_ucu_axes4_y*ucu_dalpha_c_xx +
-            axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yx;
-        const real ucu_dalpha_c_in_base_z = axis_x_ucu_axes4_z*ucu_dalpha_c_xx +
-            axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yx;
-        const real ucu_dalpha_c_in_base_x_2 = axis_x_ucu_axes4_x*ucu_dalpha_c_xz +
-            axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yz;
-        const real ucu_dalpha_c_in_base_y_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_xz +
-            axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yz;
-        const real ucu_dalpha_c_in_base_z_2 = axis_x_ucu_axes4_z*ucu_dalpha_c_xz +
-            axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yz;
-        /* (M_ta) coupling block of M */
-        const real ucu_M_ta_t = ucu_Q_t_11*ucu_q_in_base_z;
-        const real ucu_M_ta_t_2 = ucu_Q_t_12*ucu_q_in_base_y;
-        const real ucu_M_ta_t_3 = ucu_Q_t_15*ucu_q_in_base_x;
-        const real ucu_M_ta_t_4 = ucu_M_ta_t - ucu_M_ta_t_2 -
-            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_x - ucu_axis_z_x*ucu_dalpha_c_in_base_x_2;
-        const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_x +
-            ucu_Q_t_10*ucu_q_in_base_z + ucu_axis_z_y*ucu_dalpha_c_in_base_x_2 -
-            ucu_Q_t_12*ucu_q_in_base_x;
-        const real ucu_M_ta_t_6 = ucu_Q_t_10*ucu_q_in_base_y -
-            axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_x - ucu_Q_t_11*ucu_q_in_base_x -
-            ucu_axis_z_z*ucu_dalpha_c_in_base_x_2;
-        const real ucu_M_ta_t_7 = ucu_Q_t_14*ucu_q_in_base_z -
-            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_y - ucu_Q_t_15*ucu_q_in_base_y -
-            ucu_axis_z_x*ucu_dalpha_c_in_base_y_2;
-        const real ucu_M_ta_t_8 = ucu_M_ta_t + axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_y +
-            ucu_axis_z_y*ucu_dalpha_c_in_base_y_2 - ucu_M_ta_t_3;
-        const real ucu_M_ta_t_9 = ucu_Q_t_11*ucu_q_in_base_y -
-            axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_y - ucu_Q_t_14*ucu_q_in_base_x -
-            ucu_axis_z_z*ucu_dalpha_c_in_base_y_2;
-        const real ucu_M_ta_t_10 = ucu_Q_t_15*ucu_q_in_base_z -
-            axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_z - ucu_Q_t_17*ucu_q_in_base_y -
-            ucu_axis_z_x*ucu_dalpha_c_in_base_z_2;
-        const real ucu_M_ta_t_11 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_z +
-            ucu_Q_t_12*ucu_q_in_base_z + ucu_axis_z_y*ucu_dalpha_c_in_base_z_2 -
-            ucu_Q_t_17*ucu_q_in_base_x;
-        const real ucu_M_ta_t_12 = ucu_M_ta_t_3 + axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_z +
-            ucu_axis_z_z*ucu_dalpha_c_in_base_z_2 - ucu_M_ta_t_2;
+        const real ucu_dalpha_Gamma_1_in_axes4_x = ucu_D_1_4*ucu_o_4_in_axes4_x;
+        /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real ucu_d_Gamma_1_t = ucu_D_1_4*ucu_w_4_t_2;
+        const real ucu_d_Gamma_1_t_2 = inv_ucu_h_4_t_10*(ucu_Jc_2_in_axes1_xz -
+            ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z);
+        const real ucu_J_2_in_spec2_zz = m->ucu_J_2_in_spec2_zz[i];
+        const real ucu_Jc_2_in_axes2_xx = m->ucu_Jc_2_in_axes2_xx[i];
+        const real ucu_d_Gamma_1_t_3 = ucu_d_Gamma_1_t_2*ucu_v_1_in_axes2_y -
+            ucu_d_Gamma_1_t*ucu_w_4_t -
+            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z +
+            ucu_Jc_2_in_axes2_xy*ucu_h_4_t_11) -
+            ucu_h_4_t_11*(ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z +
+            ucu_h_4_t_11*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_2*ucu_e_2_in_axes4_y -
+            ucu_Jc_2_t_4*ucu_e_2_in_axes4_x));
+        const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_11;
+        const real ucu_d_Gamma_1_in_axes1_x = ucu_e_1_in_axes4_z*ucu_h_4_in_axes2_y -
+            inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 - ucu_h_4_in_spec4_x*ucu_h_4_t_11;
+        const real ucu_d_Gamma_1_in_axes1_y = ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y +
+            ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z;
+        const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_y*ucu_h_4_t_11 +
+            ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z;
+        const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_11 -
+            ucu_d_Gamma_1_in_axes1_y*ucu_e_1_in_axes4_z;
+        const real ucu_d_Gamma_1_in_axes4_y = ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_y -
+            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x;
+        /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real ucu_d_G_in_axes4_xz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x -
+            ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_x;
+        const real ucu_d_G_in_axes4_yz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_y -
+            ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_y;
         /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all freedoms */
-        const real ucu_dalpha_G_m1_t = inv_ucu_end_p1_r5_x*ucu_dalpha_Gamma_4_t;
+        const real ucu_dalpha_G_m1_in_axes4_x = -ucu_dalpha_Gamma_4_t*ucu_w_4_t_2;
+        const real ucu_dalpha_G_m1_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x +
+            axis_z_ucu_axes4_y*ucu_d_Gamma_4_t;
+        const real ucu_dalpha_G_m1_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x +
+            axis_z_ucu_axes4_z*ucu_d_Gamma_4_t;
         /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
            the leg's inertia and weight along all freedoms */
-        const real ucu_d_G_m1_t = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_x;
-        const real ucu_d_G_m1_t_2 = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_y;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_base_x = axis_x_ucu_axes4_x*ucu_end_p1_r3_x -
-            ucu_axis_z_x*ucu_end_p1_r5_x;
-        const real ucu_n_m1_in_base_y = axis_x_ucu_axes4_y*ucu_end_p1_r3_x -
-            ucu_axis_z_y*ucu_end_p1_r5_x;
-        const real ucu_n_m1_in_base_z = axis_x_ucu_axes4_z*ucu_end_p1_r3_x -
-            ucu_axis_z_z*ucu_end_p1_r5_x;
-        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
-        const real ucu_dalpha_G_m1_in_base_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_t -
-            ucu_axis_z_y*ucu_d_Gamma_4_t;
-        const real ucu_dalpha_G_m1_in_base_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_t -
-            ucu_axis_z_z*ucu_d_Gamma_4_t;
-        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real ucu_d_G_m1_in_base_x = -axis_x_ucu_axes4_x*ucu_d_G_m1_t -
-            axis_y_ucu_axes4_in_base_x*ucu_d_G_m1_t_2;
-        const real ucu_d_G_m1_in_base_y = -axis_x_ucu_axes4_y*ucu_d_G_m1_t -
-            axis_y_ucu_axes4_in_base_y*ucu_d_G_m1_t_2;
-        const real ucu_d_G_m1_in_base_z = -axis_x_ucu_axes4_z*ucu_d_G_m1_t -
-            axis_y_ucu_axes4_in_base_z*ucu_d_G_m1_t_2;
+        const real ucu_d_G_m1_in_axes4_x = ucu_d_Gamma_4_in_axes4_x*ucu_w_4_t_2;
+        const real ucu_d_G_m1_in_axes4_y = ucu_d_Gamma_4_in_axes4_y*ucu_w_4_t_2;
+        const real ucu_d_G_m1_x = axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x +
+            axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y;
+        const real ucu_d_G_m1_y = axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x +
+            axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y;
+        const real ucu_d_G_m1_z = axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x +
+            axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y;
         /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real ucu_d_G_m_xx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_x;
-        const real ucu_d_G_m_xy = ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_x;
-        const real ucu_d_G_m_xz = ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_x;
-        const real ucu_d_G_m_yx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_y;
+        const real ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x;
+        const real ucu_d_G_m_xy = ucu_d_G_m1_y*ucu_n_m1_x;
+        const real ucu_d_G_m_xz = ucu_d_G_m1_z*ucu_n_m1_x;
+        const real ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y;
+        /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real ucu_dalpha_c_in_axes4_xx = ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x +
+            ucu_h_4_in_spec4_z*ucu_o_4_in_axes4_x -
+            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_x -
+            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_x;
+        const real ucu_dalpha_c_in_axes4_xz = ucu_h_4_in_spec4_z - ucu_D_1_4*ucu_w_1_in_axes4_x -
+            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_x - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_x;
+        const real ucu_dalpha_c_in_axes4_yx = ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y -
+            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_y -
+            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_y -
+            ucu_h_4_in_spec4_y*ucu_o_4_in_axes4_x;
+        const real ucu_dalpha_c_in_axes4_yz = -ucu_h_4_in_spec4_y - ucu_D_1_4*ucu_w_1_in_axes4_y -
+            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_y - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_y;
+        /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real ucu_d_c_in_axes4_xx = ucu_h_4_in_spec4_z*(ucu_w_4_in_axes4_x +
+            ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x) - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
+            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
+            ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_x +
+            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
+            ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
+            ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x);
+        const real ucu_d_c_in_axes4_xy = ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z -
+            ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x -
+            ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
+            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
+            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
+            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y);
+        const real ucu_d_c_in_axes4_yy = ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_x*ucu_w_1_in_axes4_y
+            + ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y
+            - ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
+            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
+            ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y;
+        /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ucu_Q_t = R(0.5)*ucu_d_c_in_axes4_xx;
+        const real ucu_Q_t_2 = R(0.5)*ucu_d_c_in_axes4_yy;
+        const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy
+            - axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz;
+        const real ucu_Q_t_4 = axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t
+            - axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy;
+        const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy
+            - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz;
+        const real ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz -
+            axis_y_ucu_axes4_x*ucu_Q_t_2;
+        const real ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 -
+            axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz;
+        const real ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 -
+            axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
+        const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6;
+        const real ucu_Q_xx = -2*ucu_Q_t_9;
+        const real ucu_Q_xy = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 -
+            axis_x_ucu_axes4_y*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_7;
+        const real ucu_Q_xz = axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 -
+            axis_x_ucu_axes4_z*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_8;
+        const real ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4;
+        const real ucu_Q_yy = -2*ucu_Q_t_10;
+        const real ucu_Q_yz = axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 -
+            axis_y_ucu_axes4_y*ucu_Q_t_8 - axis_y_ucu_axes4_z*ucu_Q_t_7;
+        const real ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8;
+        const real ucu_Q_zz = -2*ucu_Q_t_11;
+        /* (M_ta) coupling block of M */
+        const real ucu_M_ta_t = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
+            axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx;
+        const real ucu_M_ta_t_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx +
+            axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx;
+        const real ucu_M_ta_t_3 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx +
+            axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx;
+        const real ucu_M_ta_t_4 = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz +
+            axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz;
+        const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz +
+            axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
+        const real ucu_M_ta_t_6 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
+            axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
+        const real ucu_M_ta_t_7 = -ucu_Q_xy*ucu_q_z;
+        const real ucu_M_ta_t_8 = ucu_Q_xz*ucu_q_y;
+        const real ucu_M_ta_t_9 = ucu_Q_yz*ucu_q_x;
+        const real ucu_M_ta_t_10 = ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
+            axis_z_ucu_axes4_x*ucu_M_ta_t_4;
+        const real ucu_M_ta_t_11 = ucu_Q_xx*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t -
+            axis_z_ucu_axes4_y*ucu_M_ta_t_4 - ucu_Q_xz*ucu_q_x;
+        const real ucu_M_ta_t_12 = ucu_Q_xy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t -
+            axis_z_ucu_axes4_z*ucu_M_ta_t_4 - ucu_Q_xx*ucu_q_y;
+        const real ucu_M_ta_t_13 = ucu_Q_yz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
+            axis_z_ucu_axes4_x*ucu_M_ta_t_5 - ucu_Q_yy*ucu_q_z;
+        const real ucu_M_ta_t_14 = ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
+            axis_z_ucu_axes4_y*ucu_M_ta_t_5;
+        const real ucu_M_ta_t_15 = ucu_Q_yy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
+            axis_z_ucu_axes4_z*ucu_M_ta_t_5 - ucu_Q_xy*ucu_q_y;
+        const real ucu_M_ta_t_16 = ucu_Q_zz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
+            axis_z_ucu_axes4_x*ucu_M_ta_t_6 - ucu_Q_yz*ucu_q_z;
+        const real ucu_M_ta_t_17 = ucu_Q_xz*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 -
+            axis_z_ucu_axes4_y*ucu_M_ta_t_6 - ucu_Q_zz*ucu_q_x;
+        const real ucu_M_ta_t_18 = ucu_M_ta_t_9 - ucu_M_ta_t_8 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
+            axis_z_ucu_axes4_z*ucu_M_ta_t_6;
         /* (M_aa) rotational block of M */
-        const real ucu_M_aa_t = ucu_M_ta_t_7*ucu_q_in_base_z + ucu_d_G_m_xy*ucu_q_in_base_z -
-            ucu_M_ta_t_10*ucu_q_in_base_y - ucu_d_G_m_xz*ucu_q_in_base_y -
-            ucu_n_m1_in_base_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_t -
-            ucu_axis_z_x*ucu_d_Gamma_4_t);
-        const real ucu_M_aa_t_2 = ucu_M_ta_t_8*ucu_q_in_base_z + ucu_d_G_m_xx*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_x - ucu_M_ta_t_11*ucu_q_in_base_y -
-            ucu_d_G_m_xz*ucu_q_in_base_x;
-        const real ucu_M_aa_t_3 = ucu_M_ta_t_12*ucu_q_in_base_y + ucu_M_ta_t_9*ucu_q_in_base_z +
-            ucu_d_G_m_xx*ucu_q_in_base_y - ucu_d_G_m_xy*ucu_q_in_base_x -
-            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_x;
-        const real ucu_M_aa_t_4 = ucu_M_ta_t_11*ucu_q_in_base_x + ucu_d_G_m_yx*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_y - ucu_M_ta_t_5*ucu_q_in_base_z -
-            ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_y*ucu_q_in_base_x;
-        const real ucu_M_aa_t_5 = ucu_M_ta_t_12*ucu_q_in_base_x + ucu_M_ta_t_6*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_y +
-            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_y*ucu_q_in_base_x -
-            ucu_d_G_m_yx*ucu_q_in_base_y;
-        const real ucu_M_aa_t_6 = ucu_M_ta_t_6*ucu_q_in_base_y +
-            ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_z*ucu_q_in_base_y - ucu_M_ta_t_9*ucu_q_in_base_x
-            - ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_z -
-            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_z*ucu_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + ucu_Q_t_10 : ucu_Q_t_10;  /* total_ucu_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ucu_Q_t_11 : ucu_Q_t_11;  /* total_ucu_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ucu_Q_t_12 : ucu_Q_t_12;  /* total_ucu_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ucu_Q_t_14 : ucu_Q_t_14;  /* total_ucu_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ucu_Q_t_15 : ucu_Q_t_15;  /* total_ucu_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ucu_Q_t_17 : ucu_Q_t_17;  /* total_ucu_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + ucu_M_ta_t_4 : ucu_M_ta_t_4;  /* total_ucu_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + ucu_M_ta_t_5 : ucu_M_ta_t_5;  /* total_ucu_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + ucu_M_ta_t_6 : ucu_M_ta_t_6;  /* total_ucu_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + ucu_M_ta_t_7 : ucu_M_ta_t_7;  /* total_ucu_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + ucu_M_ta_t_8 : ucu_M_ta_t_8;  /* total_ucu_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + ucu_M_ta_t_9 : ucu_M_ta_t_9;  /* total_ucu_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + ucu_M_ta_t_10 : ucu_M_ta_t_10;  /* total_ucu_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + ucu_M_ta_t_11 : ucu_M_ta_t_11;  /* total_ucu_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + ucu_M_ta_t_12 : ucu_M_ta_t_12;  /* total_ucu_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + ucu_M_aa_t : ucu_M_aa_t;  /* total_ucu_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + ucu_M_aa_t_2 : ucu_M_aa_t_2;  /* total_ucu_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + ucu_M_aa_t_3 : ucu_M_aa_t_3;  /* total_ucu_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + ucu_M_aa_t_4 : ucu_M_aa_t_4;  /* total_ucu_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + ucu_M_aa_t_5 : ucu_M_aa_t_5;  /* total_ucu_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + ucu_M_aa_t_6 : ucu_M_aa_t_6;  /* total_ucu_zz_3 */
-        o[0*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
-            + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
-            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
-            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+        const real ucu_M_aa_t = ucu_M_ta_t_16*ucu_q_y + ucu_d_G_m_xz*ucu_q_y +
+            ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x +
+            axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*ucu_q_z - ucu_d_G_m_xy*ucu_q_z;
+        const real ucu_M_aa_t_2 = ucu_M_ta_t_14*ucu_q_z + ucu_M_ta_t_17*ucu_q_y +
+            ucu_d_G_m_xx*ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*ucu_q_x;
+        const real ucu_M_aa_t_3 = ucu_M_ta_t_18*ucu_q_y + ucu_d_G_m_xy*ucu_q_x +
+            ucu_dalpha_G_m1_z*ucu_n_m1_x - ucu_M_ta_t_15*ucu_q_z - ucu_d_G_m_xx*ucu_q_y;
+        const real ucu_M_aa_t_4 = ucu_M_ta_t_11*ucu_q_z + ucu_d_G_m_yx*ucu_q_z +
+            ucu_dalpha_G_m1_y*ucu_n_m1_y - ucu_M_ta_t_17*ucu_q_x -
+            ucu_d_G_m1_z*ucu_n_m1_y*ucu_q_x;
+        const real ucu_M_aa_t_5 = ucu_M_ta_t_12*ucu_q_z + ucu_dalpha_G_m1_z*ucu_n_m1_y +
+            ucu_d_G_m1_y*ucu_n_m1_y*ucu_q_x - ucu_M_ta_t_18*ucu_q_x - ucu_d_G_m_yx*ucu_q_y;
+        const real ucu_M_aa_t_6 = ucu_M_ta_t_15*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_z +
+            ucu_d_G_m1_y*ucu_n_m1_z*ucu_q_x - ucu_M_ta_t_12*ucu_q_y -
+            ucu_d_G_m1_x*ucu_n_m1_z*ucu_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_Q_xx : ucu_Q_xx;  /* M_tt_ucu_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ucu_Q_xy : ucu_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ucu_Q_xz : ucu_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ucu_Q_yy : ucu_Q_yy;  /* M_tt_ucu_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ucu_Q_yz : ucu_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ucu_Q_zz : ucu_Q_zz;  /* M_tt_ucu_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + ucu_M_ta_t_10 : ucu_M_ta_t_10;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + ucu_M_ta_t_11 : ucu_M_ta_t_11;  /* M_ta_ucu_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + ucu_M_ta_t_12 : ucu_M_ta_t_12;  /* M_ta_ucu_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + ucu_M_ta_t_13 : ucu_M_ta_t_13;  /* M_ta_ucu_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ucu_M_ta_t_14 : ucu_M_ta_t_14;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + ucu_M_ta_t_15 : ucu_M_ta_t_15;  /* M_ta_ucu_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + ucu_M_ta_t_16 : ucu_M_ta_t_16;  /* M_ta_ucu_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ucu_M_ta_t_17 : ucu_M_ta_t_17;  /* M_ta_ucu_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ucu_M_ta_t_18 : ucu_M_ta_t_18;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + ucu_M_aa_t : ucu_M_aa_t;  /* M_aa_ucu_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + ucu_M_aa_t_2 : ucu_M_aa_t_2;  /* M_aa_ucu_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + ucu_M_aa_t_3 : ucu_M_aa_t_3;  /* M_aa_ucu_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + ucu_M_aa_t_4 : ucu_M_aa_t_4;  /* M_aa_ucu_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + ucu_M_aa_t_5 : ucu_M_aa_t_5;  /* M_aa_ucu_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + ucu_M_aa_t_6 : ucu_M_aa_t_6;  /* M_aa_ucu_zz */
+        o[0*count + k] = UNLESS(magnitude(ucu_h_4_t_6) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(ucu_h_4_t_9) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(ucu_h_4_t_18) >
+            TOLERANCE*TOLERANCE*1) + UNLESS(magnitude(ucu_end_p1_in_axes4_x) > TOLERANCE*1) +
+            UNLESS(magnitude(ucu_h_4_t_10) > TOLERANCE*R(0.8)) +
+            UNLESS(magnitude(ucu_v_1_in_axes2_z) > TOLERANCE*R(0.8));
     }
 }
 
@@ -2820,81 +2897,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_ucu_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_ucu_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_ucu_xx;
-        const real total_ucu_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_ucu_yy;
-        const real total_ucu_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_ucu_zz;
+        const real M_tt_xx = M_tt_ucu_xx + m_star;
+        const real M_tt_ucu_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_ucu_yy + m_star;
+        const real M_tt_ucu_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_ucu_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_ucu_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_ucu_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_ucu_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_ucu_xz_2 - h_star_in_base_y;
-        const real total_ucu_yx = sums[9*w + k];
-        const real M_ta_yx = total_ucu_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_ucu_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_ucu_yz_2;
-        const real total_ucu_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_ucu_zx;
-        const real total_ucu_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_ucu_zy;
+        const real M_ta_ucu_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_ucu_xy + h_star_z;
+        const real M_ta_ucu_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_ucu_xz - h_star_y;
+        const real M_ta_ucu_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_ucu_yx - h_star_z;
+        const real M_ta_ucu_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_ucu_yz + h_star_x;
+        const real M_ta_ucu_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_ucu_zx + h_star_y;
+        const real M_ta_ucu_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_ucu_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_ucu_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_ucu_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_ucu_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_ucu_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_ucu_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_ucu_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_ucu_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 + total_ucu_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_ucu_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_ucu_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_ucu_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_ucu_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_ucu_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_ucu_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_ucu_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_ucu_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_ucu_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_ucu_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_ucu_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_ucu_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_ucu_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_ucu_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_ucu_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_ucu_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_ucu_xy = sums[1*w + k];
-        M[1*w + k] = -total_ucu_xy;
-        M[6*w + k] = -total_ucu_xy;
-        const real total_ucu_xz = sums[2*w + k];
-        M[2*w + k] = -total_ucu_xz;
-        M[12*w + k] = -total_ucu_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_ucu_yz = sums[4*w + k];
-        M[8*w + k] = -total_ucu_yz;
-        M[13*w + k] = -total_ucu_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_ucu_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_ucu_xx_2;
-        M[18*w + k] = total_ucu_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_ucu_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_ucu_yy_2;
-        M[25*w + k] = -total_ucu_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_ucu_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_ucu_zz_2;
-        M[32*w + k] = -total_ucu_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2904,10 +2984,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_ucu_xy) + (total_ucu_xz + (M_tt_yy + total_ucu_yz))) +
-            ((M_tt_zz + total_ucu_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_ucu_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_ucu_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2990,16 +3070,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -3010,30 +3093,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3055,9 +3147,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3075,27 +3167,27 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
         /* (ucu-px_1) component along the reference direction */
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
@@ -3113,338 +3205,360 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (ucu-root_1) amplitude, with the sign of the branch */
         const real ucu_branch_1 = m->ucu_branch_1[i];
         const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
         /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
         /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
         /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
         /* (ucu-px_4) component along the reference direction */
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
-        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
+        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
+        /* (ucu-py_4) component across the reference direction */
+        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
         /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
         /* (ucu-root_4) amplitude, with the sign of the branch */
         const real ucu_branch_4 = m->ucu_branch_4[i];
         const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
         const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
         /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
-        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
-        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
-        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
-        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
-        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
-            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
-            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
-            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
-        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
-        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
-        /* (ucu-w_4) force part of reciprocal wrench 4 */
-        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
         /* (ucu-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
         const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
         const real t_dot_x = s[12*w + j];
         const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
+        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1;
+        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
+        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
+        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
+        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
+        const real ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y;
+        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
+        const real ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
+        /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
+        const real ucu_m1_w_4 = -1/ucu_end_p1_in_axes4_x;
         /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real ucu_eta_1 = omega_x*(axis_x_ucu_axes4_x*ucu_end_p1_r3_x -
-            ucu_axis_z_x*ucu_end_p1_r5_x) + omega_y*(axis_x_ucu_axes4_y*ucu_end_p1_r3_x -
-            ucu_axis_z_y*ucu_end_p1_r5_x) + omega_z*(axis_x_ucu_axes4_z*ucu_end_p1_r3_x -
-            ucu_axis_z_z*ucu_end_p1_r5_x);
-        /* (ucu-S_dot) velocity of the connection point */
-        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
-            + ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
-            + ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
-            + ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
-        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
+        const real ucu_eta_1_t = ucu_s_2*ucu_s_4;
+        const real ucu_eta_1_t_2 = ucu_c_1*ucu_c_4 - ucu_eta_1_t*ucu_s_1;
+        const real ucu_eta_1_t_3 = ucu_c_1*ucu_eta_1_t + ucu_c_4*ucu_s_1;
+        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_eta_1_t_2 +
+            ucu_base_frame_xy*ucu_eta_1_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_eta_1_t_2 +
+            ucu_base_frame_yy*ucu_eta_1_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_eta_1_t_2 +
+            ucu_base_frame_zy*ucu_eta_1_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
+            axis_y_ucu_axes4_z*ucu_w_3_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
+            axis_y_ucu_axes4_x*ucu_w_3_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
+            axis_y_ucu_axes4_y*ucu_w_3_x;
+        const real ucu_eta_1 = omega_x*(axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_w_3_x) + omega_y*(axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_w_3_y) + omega_z*(axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_w_3_z);
+        /* (ucu-qd_1) rate of joint 1 */
+        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
+        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 +
+            ucu_S_dot_t_5*ucu_s_1);
+        /* (ucu-qd_2) rate of joint 2 */
+        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
+            ucu_qd_1*ucu_v_1_in_axes2_y);
         /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
-            ucu_S_dot_r0_x*ucu_c_1);
-        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
-            - ucu_qd_4_t*ucu_v_1_r0_x);
-        const real ucu_qd_4_t_3 = inv_ucu_end_p1_r5_x*(ucu_eta_1 + ucu_qd_4_t*ucu_w_1_t_2 -
-            ucu_n_m1_t*ucu_qd_4_t_2);
+        const real ucu_qd_4_t = ucu_end_p1_in_axes4_x*ucu_s_2 -
+            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_qd_4 = ucu_m1_w_4*(ucu_eta_1 + ucu_qd_1*ucu_qd_4_t -
+            ucu_n_m1_in_axes2_z*ucu_qd_2);
         /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
-        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
+        const real ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2;
+        const real ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1;
         /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
-        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
+        const real ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4;
+        const real ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
+        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
+        const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
+        const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
         /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_z = ucu_omega_1_t - ucu_qd_4_t_3;
-        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_4_t_3;
+        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
+        /* (ucu-W_4) centripetal tensor of link 4 */
+        const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
+        const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
         /* (ucu-u_1) centripetal acceleration of the connection point */
         const real ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
         const real ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
         const real ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
+        const real ucu_u_1_in_axes4_x = axis_x_ucu_axes4_x*ucu_u_1_x +
+            axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z;
+        const real ucu_u_1_in_axes4_y = axis_y_ucu_axes4_x*ucu_u_1_x +
+            axis_y_ucu_axes4_y*ucu_u_1_y + axis_y_ucu_axes4_z*ucu_u_1_z;
         /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2;
-        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t;
-        const real ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2;
-        const real ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2;
-        const real ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x;
-        const real ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y;
-        const real ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y;
+        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4;
+        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+        const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
+        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+        const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t;
         /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
-        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
-            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
-        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
-            ucu_bias_t*ucu_omega_2_r1_x;
-        /* (ucu-u_1) centripetal acceleration of the connection point */
-        const real ucu_u_1_tip_x = axis_x_ucu_axes4_x*ucu_u_1_x + axis_x_ucu_axes4_y*ucu_u_1_y +
-            axis_x_ucu_axes4_z*ucu_u_1_z;
-        const real ucu_u_1_tip_y = axis_y_ucu_axes4_in_base_x*ucu_u_1_x +
-            axis_y_ucu_axes4_in_base_y*ucu_u_1_y + axis_y_ucu_axes4_in_base_z*ucu_u_1_z;
+        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
+        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
+            ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
+        const real ucu_bias_in_axes4_y = ucu_root_2*(ucu_zeta_2_t +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
         /* (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real ucu_rel_o_x = ucu_u_1_tip_x - ucu_bias_x;
-        const real ucu_rel_o_y = ucu_u_1_tip_y - ucu_bias_y;
-        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_x = -ucu_zeta_2_t - ucu_zeta_4_x;
+        const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x;
+        const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y;
         /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
-            axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
-            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
-        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
-            omega_z*ucu_axis_z_z;
-        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
-        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        const real ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4;
+        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
+            + axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
+            + axis_y_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y +
+            omega_z*ucu_w_3_z;
+        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
+        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
+            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
         /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
-            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
-            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
-        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
-        /* (ucu-qdd_4_o) remainder without the acceleration in: acceleration of joint 4 */
-        const real ucu_qdd_4_o_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_o_y + ucu_rel_o_x*ucu_s_4);
-        const real ucu_qdd_4_o_t_2 = inv_ucu_root_2*(ucu_qdd_4_o_t*ucu_v_1_r0_x +
-            ucu_rel_o_y*ucu_s_4 - ucu_c_4*ucu_rel_o_x);
+        const real ucu_nu_1_t = ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x -
+            ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
+            ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
+            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
+        const real ucu_nu_1 = ucu_nu_1_t - ucu_nu_1_t_2;
+        /* (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real ucu_qdd_1_o = inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_o_in_axes4_y +
+            ucu_rel_o_in_axes4_x*ucu_s_4);
+        /* (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real ucu_qdd_2_o = -inv_ucu_root_2*(ucu_qdd_1_o*ucu_v_1_in_axes2_y +
+            ucu_rel_o_in_axes4_y*ucu_s_4 - ucu_c_4*ucu_rel_o_in_axes4_x);
         /* (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ucu_alpha_1_o_t = ucu_qdd_4_o_t*ucu_s_2;
-        const real ucu_alpha_1_o_t_2 = ucu_c_2*ucu_qdd_4_o_t;
+        const real ucu_alpha_1_o_in_axes2_x = ucu_qdd_1_o*ucu_s_2;
+        const real ucu_alpha_1_o_in_axes2_y = ucu_c_2*ucu_qdd_1_o;
         /* (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ucu_alpha_2_o_x = ucu_alpha_1_o_t - ucu_zeta_2_x;
-        const real ucu_alpha_2_o_y = -ucu_alpha_1_o_t_2 - ucu_zeta_2_y;
+        const real ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
+        const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz;
+        /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real ucu_B_2_o_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2_o;
+        const real ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
+        const real ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
+        const real ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
         /* (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
-        const real ucu_alpha_4_o_x = ucu_alpha_2_o_y*ucu_c_4 - ucu_zeta_4_x -
-            ucu_qdd_4_o_t_2*ucu_s_4;
-        const real ucu_alpha_4_o_y = ucu_omega_2_r1_x*ucu_qd_4_t_3 - ucu_alpha_2_o_y*ucu_s_4 -
-            ucu_c_4*ucu_qdd_4_o_t_2;
-        const real ucu_alpha_4_o_z = ucu_alpha_2_o_x - inv_ucu_end_p1_r5_x*(ucu_nu_1 +
-            ucu_n_m1_t*ucu_qdd_4_o_t_2 + ucu_qdd_4_o_t*ucu_w_1_t_2);
-        /* (ucu-W_4) centripetal tensor of link 4 */
-        const real ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z;
-        const real ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z;
-        const real ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z;
+        const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
+            ucu_alpha_2_o_in_axes2_y*ucu_c_4 + ucu_qdd_2_o*ucu_s_4;
+        const real ucu_alpha_4_o_in_axes4_y = ucu_c_4*ucu_qdd_2_o -
+            ucu_alpha_2_o_in_axes2_y*ucu_s_4 - ucu_omega_2_in_axes4_x*ucu_qd_4;
+        const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x + ucu_m1_w_4*(ucu_nu_1 +
+            ucu_qd_4_t*ucu_qdd_1_o - ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
         /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
-        const real ucu_B_4_o_xy = ucu_W_2_xy_2 - ucu_alpha_4_o_z;
-        const real ucu_B_4_o_xz = ucu_W_4_xz + ucu_alpha_4_o_y;
-        const real ucu_B_4_o_yx = ucu_W_2_xy_2 + ucu_alpha_4_o_z;
-        const real ucu_B_4_o_yz = ucu_W_4_yz - ucu_alpha_4_o_x;
-        const real ucu_B_4_o_zx = ucu_W_4_xz - ucu_alpha_4_o_y;
-        const real ucu_B_4_o_zy = ucu_W_4_yz + ucu_alpha_4_o_x;
-        /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-           about its reference point */
-        const real ucu_h_4_x = m->ucu_h_4_x[i];
-        const real ucu_h_4_y = m->ucu_h_4_y[i];
-        const real ucu_h_4_z = m->ucu_h_4_z[i];
-        const real ucu_phi_4_o_z = ucu_B_4_o_zx*ucu_h_4_y + ucu_B_4_o_zy*ucu_h_4_z -
-            ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5);
+        const real ucu_B_4_o_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z;
+        const real ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y;
+        const real ucu_B_4_o_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z;
+        const real ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x;
+        const real ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y;
+        const real ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x;
         /* (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
            link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real ucu_acc_4_o_x = ucu_u_1_tip_x - axis_x_ucu_axes4_x*gravity_x -
+        const real ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x -
             axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_o_y = ucu_u_1_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
-            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z;
-        const real ucu_acc_4_o_z = ucu_axis_z_x*ucu_u_1_x + ucu_axis_z_y*ucu_u_1_y +
-            ucu_axis_z_z*ucu_u_1_z - gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y -
-            gravity_z*ucu_axis_z_z;
+        const real ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*gravity_x -
+            axis_y_ucu_axes4_y*gravity_y - axis_y_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_o_in_axes4_z = ucu_u_1_x*ucu_w_3_x + ucu_u_1_y*ucu_w_3_y +
+            ucu_u_1_z*ucu_w_3_z - gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z;
+        /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+           about its reference point */
+        const real ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
+        const real ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
+        const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
+        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
+        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
+        const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y +
+            ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_h_4_in_spec4_x*(ucu_phi_4_o_t +
+            ucu_phi_4_o_t_2);
         /* (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 4, about their reference points */
-        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
-        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
-        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
-        const real ucu_Sigma_4_yy = m->ucu_Sigma_4_yy[i];
-        const real ucu_Sigma_4_zz = m->ucu_Sigma_4_zz[i];
-        const real ucu_mu_4_o_x = ucu_B_4_o_yx*ucu_J_4_xy + ucu_B_4_o_zy*ucu_Sigma_4_yy +
-            ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) + ucu_acc_4_o_z*ucu_h_4_z -
-            ucu_B_4_o_yz*ucu_Sigma_4_zz - ucu_B_4_o_zx*ucu_J_4_yz - ucu_acc_4_o_y*ucu_h_4_x;
-        const real ucu_Sigma_4_xx = m->ucu_Sigma_4_xx[i];
-        const real ucu_mu_4_o_y = ucu_B_4_o_xz*ucu_Sigma_4_zz + ucu_B_4_o_zy*ucu_J_4_yz +
-            ucu_acc_4_o_x*ucu_h_4_x - ucu_B_4_o_xy*ucu_J_4_xz - ucu_B_4_o_zx*ucu_Sigma_4_xx -
-            ucu_J_4_xy*(ucu_W_2_t_4 - ucu_W_4_t) - ucu_acc_4_o_z*ucu_h_4_y;
-        const real ucu_mu_4_o_z = ucu_B_4_o_xz*ucu_J_4_xz + ucu_B_4_o_yx*ucu_Sigma_4_xx +
-            ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5) + ucu_acc_4_o_y*ucu_h_4_y -
-            ucu_B_4_o_xy*ucu_Sigma_4_yy - ucu_B_4_o_yz*ucu_J_4_xy - ucu_acc_4_o_x*ucu_h_4_z;
-        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
-        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
-        const real ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x;
-        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
-        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
-        const real ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y;
-        const real ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2;
-        /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ucu_B_2_o_xy = ucu_qdd_4_o_t_2 - ucu_W_2_xy;
-        const real ucu_B_2_o_yx = -ucu_W_2_xy - ucu_qdd_4_o_t_2;
-        const real ucu_B_2_o_zx = ucu_zeta_2_y - ucu_alpha_2_o_y;
-        const real ucu_B_2_o_zy = ucu_alpha_2_o_x - ucu_zeta_2_x;
+        const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
+        const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
+        const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
+        const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
+        const real ucu_Sigma_4_in_axes4_yy = m->ucu_Sigma_4_in_axes4_yy[i];
+        const real ucu_Sigma_4_in_axes4_zz = m->ucu_Sigma_4_in_axes4_zz[i];
+        const real ucu_mu_4_o_in_axes4_x = ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy +
+            ucu_B_4_o_in_axes4_zy*ucu_Sigma_4_in_axes4_yy + ucu_J_4_in_spec4_xz*(ucu_phi_4_o_t_2 -
+            ucu_mu_4_o_t) + ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_z -
+            ucu_B_4_o_in_axes4_yz*ucu_Sigma_4_in_axes4_zz -
+            ucu_B_4_o_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_x;
+        const real ucu_Sigma_4_in_axes4_xx = m->ucu_Sigma_4_in_axes4_xx[i];
+        const real ucu_mu_4_o_in_axes4_y = ucu_B_4_o_in_axes4_xz*ucu_Sigma_4_in_axes4_zz +
+            ucu_B_4_o_in_axes4_zy*ucu_J_4_in_spec4_yz + ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_x
+            - ucu_B_4_o_in_axes4_xy*ucu_J_4_in_spec4_xz -
+            ucu_B_4_o_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_o_t -
+            ucu_mu_4_o_t) - ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_y;
+        const real ucu_mu_4_o_in_axes4_z = ucu_B_4_o_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            ucu_B_4_o_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_J_4_in_spec4_yz*(ucu_phi_4_o_t -
+            ucu_phi_4_o_t_2) + ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
+            ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z;
         /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
-        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
-        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
-        const real ucu_Sigma_2_yy = m->ucu_Sigma_2_yy[i];
-        const real ucu_Sigma_2_zz = m->ucu_Sigma_2_zz[i];
-        const real ucu_h_2_y = m->ucu_h_2_y[i];
-        const real ucu_h_2_z = m->ucu_h_2_z[i];
-        const real ucu_mu_2_o_x = ucu_B_2_o_yx*ucu_J_2_xy + ucu_B_2_o_zx*ucu_J_2_xz +
-            ucu_B_2_o_zy*ucu_Sigma_2_yy + ucu_Sigma_2_zz*ucu_alpha_1_o_t + ucu_g_r1_x*ucu_h_2_z +
-            ucu_g_r3_y*ucu_h_2_y - ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3);
-        const real ucu_Sigma_2_xx = m->ucu_Sigma_2_xx[i];
-        const real ucu_h_2_x = m->ucu_h_2_x[i];
-        const real ucu_mu_2_o_y = ucu_B_2_o_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x -
-            ucu_B_2_o_zx*ucu_Sigma_2_xx - ucu_B_2_o_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t -
-            ucu_W_2_t_3) - ucu_Sigma_2_zz*ucu_alpha_1_o_t_2 - ucu_g_r3_x*ucu_h_2_y;
-        const real ucu_mu_2_o_z = ucu_B_2_o_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_o_t +
-            ucu_J_2_yz*ucu_alpha_1_o_t_2 - ucu_B_2_o_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t -
-            ucu_W_2_t_2) - ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x;
+        const real ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
+        const real ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
+        const real ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2;
+        const real ucu_mu_2_t = m->ucu_mu_2_t[i];
+        const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
+        const real ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1;
+        const real ucu_mu_2_o_t_4 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
+        const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
+        const real ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_o_t_4 + ucu_mu_2_t_3*ucu_s_2;
+        const real ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_o_t_4*ucu_s_2;
+        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
+        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
+        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
+        const real ucu_Sigma_2_in_axes2_yy = m->ucu_Sigma_2_in_axes2_yy[i];
+        const real ucu_Sigma_2_in_axes2_zz = m->ucu_Sigma_2_in_axes2_zz[i];
+        const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
+        const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
+        const real ucu_mu_2_o_in_axes2_x = ucu_B_2_o_in_axes2_yx*ucu_J_2_in_spec2_xy +
+            ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
+            ucu_B_2_o_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
+            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_o_t_2 -
+            ucu_mu_2_o_t_3);
+        const real ucu_Sigma_2_in_axes2_xx = m->ucu_Sigma_2_in_axes2_xx[i];
+        const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
+        const real ucu_mu_2_o_in_axes2_y = ucu_B_2_o_in_axes2_xy*ucu_J_2_in_spec2_yz +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
+            - ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_o_t -
+            ucu_mu_2_o_t_3) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y;
+        const real ucu_mu_2_o_in_axes2_z = ucu_B_2_o_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
+            ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x -
+            ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_o_t -
+            ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
         /* (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real ucu_N_2_o_x = ucu_mu_2_o_x + ucu_mu_4_o_z;
-        const real ucu_N_2_o_y = ucu_mu_2_o_y + ucu_c_4*ucu_mu_4_o_x - ucu_mu_4_o_y*ucu_s_4;
-        const real ucu_N_2_o_z = ucu_mu_2_o_z + ucu_c_4*ucu_mu_4_o_y + ucu_mu_4_o_x*ucu_s_4;
-        /* (ucu-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real ucu_G_o_t = inv_ucu_end_p1_r5_x*ucu_mu_4_o_z;
-        const real ucu_G_o_t_2 = inv_ucu_root_2*(ucu_N_2_o_z + ucu_G_o_t*ucu_n_m1_t);
-        const real ucu_G_o_t_3 = inv_ucu_v_1_r0_y*(ucu_G_o_t*ucu_w_1_t_2 +
-            ucu_G_o_t_2*ucu_v_1_r0_x + ucu_N_2_o_y*ucu_c_2 - ucu_N_2_o_x*ucu_s_2);
+        const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
+        const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y + ucu_c_4*ucu_mu_4_o_in_axes4_x -
+            ucu_mu_4_o_in_axes4_y*ucu_s_4;
+        const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z + ucu_c_4*ucu_mu_4_o_in_axes4_y +
+            ucu_mu_4_o_in_axes4_x*ucu_s_4;
+        /* (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real ucu_G_m1_o = ucu_m1_w_4*ucu_mu_4_o_in_axes4_z;
         /* (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ucu_c_o_x = ucu_G_o_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) -
-            ucu_B_4_o_xy*ucu_h_4_z - ucu_B_4_o_xz*ucu_h_4_x - ucu_G_o_t_2*ucu_c_4;
-        const real ucu_c_o_y = ucu_G_o_t_2*ucu_s_4 + ucu_G_o_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4
-            + ucu_W_4_t) - ucu_B_4_o_yx*ucu_h_4_y - ucu_B_4_o_yz*ucu_h_4_x;
+        const real ucu_c_o_t = inv_ucu_root_2*(ucu_N_2_o_in_axes2_z -
+            ucu_G_m1_o*ucu_n_m1_in_axes2_z);
+        const real ucu_c_o_t_2 = inv_ucu_v_1_in_axes2_z*(ucu_c_o_t*ucu_v_1_in_axes2_y -
+            ucu_G_m1_o*ucu_qd_4_t - ucu_N_2_o_in_axes2_x*ucu_s_2 - ucu_N_2_o_in_axes2_y*ucu_c_2);
+        const real ucu_c_o_in_axes4_x = ucu_c_o_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_o_t +
+            ucu_phi_4_o_t_2) - ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z -
+            ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_4*ucu_c_o_t;
+        const real ucu_c_o_in_axes4_y = ucu_c_4*ucu_c_o_t_2 + ucu_c_o_t*ucu_s_4 +
+            ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
+            ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x;
+        /* (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
+           actuation */
+        const real ucu_c_m_o_in_axes4_x = -ucu_G_m1_o*ucu_n_m1_in_axes4_x;
         /* (ucu-U) velocity and gravity terms of the leg force */
-        const real ucu_U_in_base_x = ucu_axis_z_x*ucu_phi_4_o_z - axis_x_ucu_axes4_x*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_x*ucu_c_o_y;
-        const real ucu_U_in_base_y = ucu_axis_z_y*ucu_phi_4_o_z - axis_x_ucu_axes4_y*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_y*ucu_c_o_y;
-        const real ucu_U_in_base_z = ucu_axis_z_z*ucu_phi_4_o_z - axis_x_ucu_axes4_z*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_z*ucu_c_o_y;
-        /* (ucu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real ucu_G_m_o_x = ucu_G_o_t*ucu_end_p1_r3_x;
+        const real ucu_U_x = ucu_phi_4_o_in_axes4_z*ucu_w_3_x -
+            axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y;
+        const real ucu_U_y = ucu_phi_4_o_in_axes4_z*ucu_w_3_y -
+            axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y;
+        const real ucu_U_z = ucu_phi_4_o_in_axes4_z*ucu_w_3_z -
+            axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
         /* (Z_a) rotational part of Z */
-        const real ucu_Z_a_t = ucu_U_in_base_z*ucu_q_in_base_y + ucu_axis_z_x*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_x*ucu_G_m_o_x - ucu_U_in_base_y*ucu_q_in_base_z;
-        const real ucu_Z_a_t_2 = ucu_U_in_base_x*ucu_q_in_base_z + ucu_axis_z_y*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_y*ucu_G_m_o_x - ucu_U_in_base_z*ucu_q_in_base_x;
-        const real ucu_Z_a_t_3 = ucu_U_in_base_y*ucu_q_in_base_x + ucu_axis_z_z*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_z*ucu_G_m_o_x - ucu_U_in_base_x*ucu_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ucu_U_in_base_x : ucu_U_in_base_x;  /* total_ucu_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ucu_U_in_base_y : ucu_U_in_base_y;  /* total_ucu_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ucu_U_in_base_z : ucu_U_in_base_z;  /* total_ucu_z */
-        terms[3*count + k] = add ? terms[3*count + k] + ucu_Z_a_t : ucu_Z_a_t;  /* total_ucu_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + ucu_Z_a_t_2 : ucu_Z_a_t_2;  /* total_ucu_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + ucu_Z_a_t_3 : ucu_Z_a_t_3;  /* total_ucu_z_2 */
+        const real ucu_Z_a_t = ucu_U_z*ucu_q_y + ucu_mu_4_o_in_axes4_z*ucu_w_3_x -
+            axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*ucu_q_z;
+        const real ucu_Z_a_t_2 = ucu_U_x*ucu_q_z + ucu_mu_4_o_in_axes4_z*ucu_w_3_y -
+            axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*ucu_q_x;
+        const real ucu_Z_a_t_3 = ucu_U_y*ucu_q_x + ucu_mu_4_o_in_axes4_z*ucu_w_3_z -
+            axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*ucu_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_U_x : ucu_U_x;  /* Z_t_ucu_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ucu_U_y : ucu_U_y;  /* Z_t_ucu_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ucu_U_z : ucu_U_z;  /* Z_t_ucu_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + ucu_Z_a_t : ucu_Z_a_t;  /* Z_a_ucu_x */
+        terms[4*count + k] = add ? terms[4*count + k] + ucu_Z_a_t_2 : ucu_Z_a_t_2;  /* Z_a_ucu_y */
+        terms[5*count + k] = add ? terms[5*count + k] + ucu_Z_a_t_3 : ucu_Z_a_t_3;  /* Z_a_ucu_z */
         o[0*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
-            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
-            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2)
+            > TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > TOLERANCE*R(0.8));
     }
 }
 
@@ -3460,27 +3574,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_ucu_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_ucu_x;
+        const real Z_t_ucu_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_ucu_x;
         const real Z_p_y = s[19*w + k];
-        const real total_ucu_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_ucu_y;
+        const real Z_t_ucu_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_ucu_y;
         const real Z_p_z = s[20*w + k];
-        const real total_ucu_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_ucu_z;
+        const real Z_t_ucu_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_ucu_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_ucu_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_ucu_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_ucu_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_ucu_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_ucu_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_ucu_z_2;
+        const real Z_a_ucu_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_ucu_x + Z_q_x;
+        const real Z_a_ucu_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_ucu_y + Z_q_y;
+        const real Z_a_ucu_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_ucu_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -3581,27 +3697,27 @@ INLINE void H_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
         /* (ucu-px_1) component along the reference direction */
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
@@ -3620,31 +3736,32 @@ INLINE void H_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
         /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        const real ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z;
-        const real ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x;
-        const real ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y;
-        o[0*count + k] = ucu_axis_z_x;
-        o[1*count + k] = ucu_axis_z_y;
-        o[2*count + k] = ucu_axis_z_z;
-        o[3*count + k] = ucu_H_a_3_t;
-        o[4*count + k] = ucu_H_a_3_t_2;
-        o[5*count + k] = ucu_H_a_3_t_3;
-        o[7*count + k] = (ucu_axis_z_x + (ucu_axis_z_y + ucu_axis_z_z)) + (ucu_H_a_3_t +
-            (ucu_H_a_3_t_2 + ucu_H_a_3_t_3));
+        const real ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y;
+        const real ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z;
+        const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        o[0*count + k] = ucu_w_3_x;
+        o[1*count + k] = ucu_w_3_y;
+        o[2*count + k] = ucu_w_3_z;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        o[3*count + k] = ucu_H_a_3_x;
+        o[4*count + k] = ucu_H_a_3_y;
+        o[5*count + k] = ucu_H_a_3_z;
+        o[7*count + k] = (ucu_w_3_x + (ucu_w_3_y + ucu_w_3_z)) + (ucu_H_a_3_x + (ucu_H_a_3_y +
+            ucu_H_a_3_z));
         o[6*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ucu_root_2) > TOLERANCE*R(0.8));
@@ -3751,33 +3868,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3785,31 +3889,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3837,9 +3967,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3857,27 +3987,27 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
         /* (ucu-px_1) component along the reference direction */
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
@@ -3895,354 +4025,375 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         /* (ucu-root_1) amplitude, with the sign of the branch */
         const real ucu_branch_1 = m->ucu_branch_1[i];
         const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
         /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
         /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
         /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
         /* (ucu-px_4) component along the reference direction */
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
-        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
+        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
+        /* (ucu-py_4) component across the reference direction */
+        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
         /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
         /* (ucu-root_4) amplitude, with the sign of the branch */
         const real ucu_branch_4 = m->ucu_branch_4[i];
         const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
         const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
         /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
-        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
-        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
-        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
-        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
-        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
-            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
-            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
-            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
-        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
-        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
-        /* (ucu-w_4) force part of reciprocal wrench 4 */
-        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
         /* (ucu-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
         const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
         const real t_dot_x = s[12*w + j];
         const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
-            + ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
-            + ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
-            + ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
-        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
-        /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
-            ucu_S_dot_r0_x*ucu_c_1);
-        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
-            - ucu_qd_4_t*ucu_v_1_r0_x);
-        /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
-        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
-        /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
-        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2;
-        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t;
-        const real ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2;
-        const real ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2;
-        const real ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x;
-        const real ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y;
-        const real ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y;
-        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
-        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
-            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
-        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
-            ucu_bias_t*ucu_omega_2_r1_x;
-        /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
-            axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
-            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
-        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
-            omega_z*ucu_axis_z_z;
-        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
-        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
-        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
-        const real ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x;
-        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
-        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
-        const real ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y;
-        const real ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2;
-        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        const real ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z;
-        const real ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x;
-        const real ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y;
+        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1;
+        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
+        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
+        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
+        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
+        const real ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y;
+        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
+        const real ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
+        /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
+        const real ucu_m1_w_4 = -1/ucu_end_p1_in_axes4_x;
         /* (ucu-qd_1) rate of joint 1 */
-        const real ucu_qd_1_t = ucu_omega_tip_z -
-            inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x + ucu_qd_4_t*ucu_w_1_t_2 -
-            ucu_n_m1_t*ucu_qd_4_t_2);
+        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
+        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 +
+            ucu_S_dot_t_5*ucu_s_1);
+        /* (ucu-qd_2) rate of joint 2 */
+        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
+            ucu_qd_1*ucu_v_1_in_axes2_y);
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = ucu_s_2*ucu_s_4;
+        const real ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1;
+        const real ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1;
+        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
+            ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
+            ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
+            ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
+            axis_y_ucu_axes4_z*ucu_w_3_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
+            axis_y_ucu_axes4_x*ucu_w_3_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
+            axis_y_ucu_axes4_y*ucu_w_3_x;
+        const real ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 -
+            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
+            + axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y +
+            omega_z*ucu_w_3_z;
+        const real ucu_qd_4 = ucu_omega_in_axes4_z +
+            ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x + ucu_qd_1*ucu_qd_4_t_4 -
+            ucu_n_m1_in_axes2_z*ucu_qd_2);
+        /* (ucu-omega_1) angular velocity of link 1 */
+        const real ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2;
+        const real ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1;
+        /* (ucu-omega_2) angular velocity of link 2 */
+        const real ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4;
+        const real ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
+        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
+        const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
+        const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
+        /* (ucu-omega_4) angular velocity of link 4 */
+        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
+        /* (ucu-W_4) centripetal tensor of link 4 */
+        const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
+        const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
         /* (ucu-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y;
+        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z;
+        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x;
+        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x;
         /* (ucu-S_ddot) acceleration of the connection point */
         const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
         const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
         const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
-        const real ucu_S_ddot_tip_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
+        const real ucu_S_ddot_in_axes4_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
             axis_x_ucu_axes4_y*ucu_S_ddot_y + axis_x_ucu_axes4_z*ucu_S_ddot_z;
-        const real ucu_S_ddot_tip_y = axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x +
-            axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y + axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z;
-        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-        const real ucu_rel_x = ucu_S_ddot_tip_x - ucu_bias_x;
-        const real ucu_rel_y = ucu_S_ddot_tip_y - ucu_bias_y;
-        /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t;
+        const real ucu_S_ddot_in_axes4_y = axis_y_ucu_axes4_x*ucu_S_ddot_x +
+            axis_y_ucu_axes4_y*ucu_S_ddot_y + axis_y_ucu_axes4_z*ucu_S_ddot_z;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4;
         /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t;
+        const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
         /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_x = ucu_zeta_4_x - ucu_zeta_2_t;
+        const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t;
+        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
+        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
+            ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
+        const real ucu_bias_in_axes4_y = ucu_root_2*(ucu_zeta_2_t +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
+        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+        const real ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x;
+        const real ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y;
         /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        const real ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4;
+        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
+            + axis_y_ucu_axes4_z*omega_z;
+        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
+        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
+            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
         /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
-            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
-            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
+        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x -
+            ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
+            ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
+            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
         const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
         /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real ucu_etad_1_t = ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x +
+        const real ucu_etad_1_t = ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x +
             alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
-            ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x + alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z);
+            ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x + alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z);
         const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
         /* (ucu-qdd_1) acceleration of joint 1 */
-        const real ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4);
-        const real ucu_qdd_1_t_2 = inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 -
-            ucu_c_4*ucu_rel_x);
+        const real ucu_qdd_1 = inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y +
+            ucu_rel_in_axes4_x*ucu_s_4);
+        /* (ucu-qdd_2) acceleration of joint 2 */
+        const real ucu_qdd_2 = -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y +
+            ucu_rel_in_axes4_y*ucu_s_4 - ucu_c_4*ucu_rel_in_axes4_x);
+        /* (ucu-alpha_1) angular acceleration of link 1 */
+        const real ucu_alpha_1_in_axes2_x = ucu_qdd_1*ucu_s_2;
+        const real ucu_alpha_1_in_axes2_y = ucu_c_2*ucu_qdd_1;
+        /* (ucu-alpha_2) angular acceleration of link 2 */
+        const real ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x;
+        const real ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz;
+        /* (ucu-B_2) acceleration tensor of link 2 */
+        const real ucu_B_2_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2;
+        const real ucu_B_2_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2;
+        const real ucu_B_2_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_in_axes2_y;
+        const real ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x;
+        /* (ucu-alpha_4) angular acceleration of link 4 */
+        const real ucu_alpha_4_in_axes4_x = ucu_zeta_4_in_axes4_x + ucu_alpha_2_in_axes2_y*ucu_c_4
+            + ucu_qdd_2*ucu_s_4;
+        const real ucu_alpha_4_in_axes4_y = ucu_c_4*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_s_4 -
+            ucu_omega_2_in_axes4_x*ucu_qd_4;
+        const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x + ucu_m1_w_4*(ucu_etad_1 +
+            ucu_qd_4_t_4*ucu_qdd_1 - ucu_n_m1_in_axes2_z*ucu_qdd_2);
+        /* (ucu-B_4) acceleration tensor of link 4 */
+        const real ucu_B_4_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z;
+        const real ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y;
+        const real ucu_B_4_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z;
+        const real ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x;
+        const real ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y;
+        const real ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x;
         /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real ucu_acc_4_x = ucu_S_ddot_tip_x - axis_x_ucu_axes4_x*gravity_x -
+        const real ucu_acc_4_in_axes4_x = ucu_S_ddot_in_axes4_x - axis_x_ucu_axes4_x*gravity_x -
             axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_y = ucu_S_ddot_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
-            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z;
-        const real ucu_acc_4_z = ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y +
-            ucu_S_ddot_z*ucu_axis_z_z - gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y -
-            gravity_z*ucu_axis_z_z;
-        /* (ucu-alpha_1) angular acceleration of link 1 */
-        const real ucu_alpha_1_t = ucu_qdd_1_t*ucu_s_2;
-        const real ucu_alpha_1_t_2 = ucu_c_2*ucu_qdd_1_t;
-        /* (ucu-alpha_2) angular acceleration of link 2 */
-        const real ucu_alpha_2_x = ucu_alpha_1_t - ucu_zeta_2_x;
-        const real ucu_alpha_2_y = -ucu_alpha_1_t_2 - ucu_zeta_2_y;
-        /* (ucu-alpha_4) angular acceleration of link 4 */
-        const real ucu_alpha_4_x = ucu_zeta_4_x + ucu_alpha_2_y*ucu_c_4 - ucu_qdd_1_t_2*ucu_s_4;
-        const real ucu_alpha_4_y = -ucu_alpha_2_y*ucu_s_4 - ucu_c_4*ucu_qdd_1_t_2 -
-            ucu_omega_2_r1_x*ucu_qd_1_t;
-        const real ucu_alpha_4_z = ucu_alpha_2_x - inv_ucu_end_p1_r5_x*(ucu_etad_1 +
-            ucu_n_m1_t*ucu_qdd_1_t_2 + ucu_qdd_1_t*ucu_w_1_t_2);
-        /* (ucu-W_4) centripetal tensor of link 4 */
-        const real ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z;
-        const real ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z;
-        const real ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z;
-        /* (ucu-B_4) acceleration tensor of link 4 */
-        const real ucu_B_4_xy = ucu_W_2_xy_2 - ucu_alpha_4_z;
-        const real ucu_B_4_xz = ucu_W_4_xz + ucu_alpha_4_y;
-        const real ucu_B_4_yx = ucu_W_2_xy_2 + ucu_alpha_4_z;
-        const real ucu_B_4_yz = ucu_W_4_yz - ucu_alpha_4_x;
-        const real ucu_B_4_zx = ucu_W_4_xz - ucu_alpha_4_y;
-        const real ucu_B_4_zy = ucu_W_4_yz + ucu_alpha_4_x;
+        const real ucu_acc_4_in_axes4_y = ucu_S_ddot_in_axes4_y - axis_y_ucu_axes4_x*gravity_x -
+            axis_y_ucu_axes4_y*gravity_y - axis_y_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_in_axes4_z = ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y +
+            ucu_S_ddot_z*ucu_w_3_z - gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y -
+            gravity_z*ucu_w_3_z;
         /* (ucu-phi_4) inertia force of link 4 from its turning about its reference point */
-        const real ucu_h_4_x = m->ucu_h_4_x[i];
-        const real ucu_h_4_y = m->ucu_h_4_y[i];
-        const real ucu_h_4_z = m->ucu_h_4_z[i];
-        const real ucu_phi_4_z = ucu_B_4_zx*ucu_h_4_y + ucu_B_4_zy*ucu_h_4_z -
-            ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5);
+        const real ucu_phi_4_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
+        const real ucu_phi_4_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
+        const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
+        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
+        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
+        const real ucu_phi_4_in_axes4_z = ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y +
+            ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_h_4_in_spec4_x*(ucu_phi_4_t +
+            ucu_phi_4_t_2);
         /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
-        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
-        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
-        const real ucu_Sigma_4_yy = m->ucu_Sigma_4_yy[i];
-        const real ucu_Sigma_4_zz = m->ucu_Sigma_4_zz[i];
-        const real ucu_mu_4_x = ucu_B_4_yx*ucu_J_4_xy + ucu_B_4_zy*ucu_Sigma_4_yy +
-            ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) + ucu_acc_4_z*ucu_h_4_z -
-            ucu_B_4_yz*ucu_Sigma_4_zz - ucu_B_4_zx*ucu_J_4_yz - ucu_acc_4_y*ucu_h_4_x;
-        const real ucu_Sigma_4_xx = m->ucu_Sigma_4_xx[i];
-        const real ucu_mu_4_y = ucu_B_4_xz*ucu_Sigma_4_zz + ucu_B_4_zy*ucu_J_4_yz +
-            ucu_acc_4_x*ucu_h_4_x - ucu_B_4_xy*ucu_J_4_xz - ucu_B_4_zx*ucu_Sigma_4_xx -
-            ucu_J_4_xy*(ucu_W_2_t_4 - ucu_W_4_t) - ucu_acc_4_z*ucu_h_4_y;
-        const real ucu_mu_4_z = ucu_B_4_xz*ucu_J_4_xz + ucu_B_4_yx*ucu_Sigma_4_xx +
-            ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5) + ucu_acc_4_y*ucu_h_4_y -
-            ucu_B_4_xy*ucu_Sigma_4_yy - ucu_B_4_yz*ucu_J_4_xy - ucu_acc_4_x*ucu_h_4_z;
-        /* (ucu-B_2) acceleration tensor of link 2 */
-        const real ucu_B_2_xy = ucu_qdd_1_t_2 - ucu_W_2_xy;
-        const real ucu_B_2_yx = -ucu_W_2_xy - ucu_qdd_1_t_2;
-        const real ucu_B_2_zx = ucu_zeta_2_y - ucu_alpha_2_y;
-        const real ucu_B_2_zy = ucu_alpha_2_x - ucu_zeta_2_x;
+        const real ucu_mu_4_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
+        const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
+        const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
+        const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
+        const real ucu_Sigma_4_in_axes4_yy = m->ucu_Sigma_4_in_axes4_yy[i];
+        const real ucu_Sigma_4_in_axes4_zz = m->ucu_Sigma_4_in_axes4_zz[i];
+        const real ucu_mu_4_in_axes4_x = ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy +
+            ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy + ucu_J_4_in_spec4_xz*(ucu_phi_4_t_2 -
+            ucu_mu_4_t) + ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z -
+            ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz - ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz
+            - ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x;
+        const real ucu_Sigma_4_in_axes4_xx = m->ucu_Sigma_4_in_axes4_xx[i];
+        const real ucu_mu_4_in_axes4_y = ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz +
+            ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz + ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x -
+            ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz - ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx
+            - ucu_J_4_in_spec4_xy*(ucu_phi_4_t - ucu_mu_4_t) -
+            ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y;
+        const real ucu_mu_4_in_axes4_z = ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_J_4_in_spec4_yz*(ucu_phi_4_t -
+            ucu_phi_4_t_2) + ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy - ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy
+            - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z;
         /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
-        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
-        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
-        const real ucu_Sigma_2_yy = m->ucu_Sigma_2_yy[i];
-        const real ucu_Sigma_2_zz = m->ucu_Sigma_2_zz[i];
-        const real ucu_h_2_y = m->ucu_h_2_y[i];
-        const real ucu_h_2_z = m->ucu_h_2_z[i];
-        const real ucu_mu_2_x = ucu_B_2_yx*ucu_J_2_xy + ucu_B_2_zx*ucu_J_2_xz +
-            ucu_B_2_zy*ucu_Sigma_2_yy + ucu_Sigma_2_zz*ucu_alpha_1_t + ucu_g_r1_x*ucu_h_2_z +
-            ucu_g_r3_y*ucu_h_2_y - ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3);
-        const real ucu_Sigma_2_xx = m->ucu_Sigma_2_xx[i];
-        const real ucu_h_2_x = m->ucu_h_2_x[i];
-        const real ucu_mu_2_y = ucu_B_2_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x -
-            ucu_B_2_zx*ucu_Sigma_2_xx - ucu_B_2_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t -
-            ucu_W_2_t_3) - ucu_Sigma_2_zz*ucu_alpha_1_t_2 - ucu_g_r3_x*ucu_h_2_y;
-        const real ucu_mu_2_z = ucu_B_2_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_t +
-            ucu_J_2_yz*ucu_alpha_1_t_2 - ucu_B_2_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t -
-            ucu_W_2_t_2) - ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x;
+        const real ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
+        const real ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
+        const real ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2;
+        const real ucu_mu_2_t = m->ucu_mu_2_t[i];
+        const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
+        const real ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1;
+        const real ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
+        const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
+        const real ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_mu_2_t_3*ucu_s_2;
+        const real ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_t_7*ucu_s_2;
+        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
+        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
+        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
+        const real ucu_Sigma_2_in_axes2_yy = m->ucu_Sigma_2_in_axes2_yy[i];
+        const real ucu_Sigma_2_in_axes2_zz = m->ucu_Sigma_2_in_axes2_zz[i];
+        const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
+        const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
+        const real ucu_mu_2_in_axes2_x = ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy +
+            ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz + ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy
+            + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
+            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
+            ucu_mu_2_t_6);
+        const real ucu_Sigma_2_in_axes2_xx = m->ucu_Sigma_2_in_axes2_xx[i];
+        const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
+        const real ucu_mu_2_in_axes2_y = ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x -
+            ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx - ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz
+            - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6) -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_y;
+        const real ucu_mu_2_in_axes2_z = ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
+            ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
+            ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
+            ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
         /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real ucu_N_2_x = ucu_mu_2_x + ucu_mu_4_z;
-        const real ucu_N_2_y = ucu_mu_2_y + ucu_c_4*ucu_mu_4_x - ucu_mu_4_y*ucu_s_4;
-        const real ucu_N_2_z = ucu_mu_2_z + ucu_c_4*ucu_mu_4_y + ucu_mu_4_x*ucu_s_4;
-        /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
+        const real ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
+        const real ucu_N_2_in_axes2_y = ucu_mu_2_in_axes2_y + ucu_c_4*ucu_mu_4_in_axes4_x -
+            ucu_mu_4_in_axes4_y*ucu_s_4;
+        const real ucu_N_2_in_axes2_z = ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_y +
+            ucu_mu_4_in_axes4_x*ucu_s_4;
+        /* (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
            freedoms */
-        const real ucu_G_t = inv_ucu_end_p1_r5_x*ucu_mu_4_z;
-        const real ucu_G_t_2 = inv_ucu_root_2*(ucu_N_2_z + ucu_G_t*ucu_n_m1_t);
-        const real ucu_G_t_3 = inv_ucu_v_1_r0_y*(ucu_G_t*ucu_w_1_t_2 + ucu_G_t_2*ucu_v_1_r0_x +
-            ucu_N_2_y*ucu_c_2 - ucu_N_2_x*ucu_s_2);
+        const real ucu_G_m1 = ucu_m1_w_4*ucu_mu_4_in_axes4_z;
         /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ucu_c_x = ucu_G_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) -
-            ucu_B_4_xy*ucu_h_4_z - ucu_B_4_xz*ucu_h_4_x - ucu_G_t_2*ucu_c_4;
-        const real ucu_c_y = ucu_G_t_2*ucu_s_4 + ucu_G_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 +
-            ucu_W_4_t) - ucu_B_4_yx*ucu_h_4_y - ucu_B_4_yz*ucu_h_4_x;
-        /* (ucu-G_m) moment at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real ucu_G_m_x = ucu_G_t*ucu_end_p1_r3_x;
-        /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real ucu_c_in_base_x = axis_x_ucu_axes4_x*ucu_c_x +
-            axis_y_ucu_axes4_in_base_x*ucu_c_y - ucu_axis_z_x*ucu_phi_4_z;
-        const real ucu_c_in_base_y = axis_x_ucu_axes4_y*ucu_c_x +
-            axis_y_ucu_axes4_in_base_y*ucu_c_y - ucu_axis_z_y*ucu_phi_4_z;
-        const real ucu_c_in_base_z = axis_x_ucu_axes4_z*ucu_c_x +
-            axis_y_ucu_axes4_in_base_z*ucu_c_y - ucu_axis_z_z*ucu_phi_4_z;
+        const real ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z - ucu_G_m1*ucu_n_m1_in_axes2_z);
+        const real ucu_c_t_2 = inv_ucu_v_1_in_axes2_z*(ucu_c_t*ucu_v_1_in_axes2_y -
+            ucu_G_m1*ucu_qd_4_t_4 - ucu_N_2_in_axes2_x*ucu_s_2 - ucu_N_2_in_axes2_y*ucu_c_2);
+        const real ucu_c_in_axes4_x = ucu_c_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_t +
+            ucu_phi_4_t_2) - ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z -
+            ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_4*ucu_c_t;
+        const real ucu_c_in_axes4_y = ucu_c_4*ucu_c_t_2 + ucu_c_t*ucu_s_4 +
+            ucu_h_4_in_spec4_z*(ucu_mu_4_t + ucu_phi_4_t) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y
+            - ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x;
+        const real ucu_c_x = axis_x_ucu_axes4_x*ucu_c_in_axes4_x +
+            axis_y_ucu_axes4_x*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*ucu_w_3_x;
+        const real ucu_c_y = axis_x_ucu_axes4_y*ucu_c_in_axes4_x +
+            axis_y_ucu_axes4_y*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*ucu_w_3_y;
+        const real ucu_c_z = axis_x_ucu_axes4_z*ucu_c_in_axes4_x +
+            axis_y_ucu_axes4_z*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*ucu_w_3_z;
+        /* (ucu-c_m) moment of the leg on the platform without actuation */
+        const real ucu_c_m_in_axes4_x = -ucu_G_m1*ucu_n_m1_in_axes4_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real ucu_R_a_t = axis_x_ucu_axes4_x*ucu_G_m_x + ucu_c_in_base_z*ucu_q_in_base_y -
-            ucu_axis_z_x*ucu_mu_4_z - ucu_c_in_base_y*ucu_q_in_base_z;
-        const real ucu_R_a_t_2 = axis_x_ucu_axes4_y*ucu_G_m_x + ucu_c_in_base_x*ucu_q_in_base_z -
-            ucu_axis_z_y*ucu_mu_4_z - ucu_c_in_base_z*ucu_q_in_base_x;
-        const real ucu_R_a_t_3 = axis_x_ucu_axes4_z*ucu_G_m_x + ucu_c_in_base_y*ucu_q_in_base_x -
-            ucu_axis_z_z*ucu_mu_4_z - ucu_c_in_base_x*ucu_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ucu_c_in_base_x : ucu_c_in_base_x;  /* total_ucu_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ucu_c_in_base_y : ucu_c_in_base_y;  /* total_ucu_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ucu_c_in_base_z : ucu_c_in_base_z;  /* total_ucu_z */
-        terms[3*count + k] = add ? terms[3*count + k] + ucu_R_a_t : ucu_R_a_t;  /* total_ucu_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + ucu_R_a_t_2 : ucu_R_a_t_2;  /* total_ucu_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + ucu_R_a_t_3 : ucu_R_a_t_3;  /* total_ucu_z_2 */
-        o[0*count + k] = ucu_axis_z_x;
-        o[1*count + k] = ucu_axis_z_y;
-        o[2*count + k] = ucu_axis_z_z;
-        o[3*count + k] = ucu_H_a_3_t;
-        o[4*count + k] = ucu_H_a_3_t_2;
-        o[5*count + k] = ucu_H_a_3_t_3;
+        const real ucu_R_a_t = ucu_c_y*ucu_q_z + ucu_mu_4_in_axes4_z*ucu_w_3_x -
+            axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x - ucu_c_z*ucu_q_y;
+        const real ucu_R_a_t_2 = ucu_c_z*ucu_q_x + ucu_mu_4_in_axes4_z*ucu_w_3_y -
+            axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x - ucu_c_x*ucu_q_z;
+        const real ucu_R_a_t_3 = ucu_c_x*ucu_q_y + ucu_mu_4_in_axes4_z*ucu_w_3_z -
+            axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x - ucu_c_y*ucu_q_x;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        const real ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y;
+        const real ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z;
+        const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_c_x : ucu_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + ucu_c_y : ucu_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + ucu_c_z : ucu_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + ucu_R_a_t : ucu_R_a_t;  /* R_a_ucu_x */
+        terms[4*count + k] = add ? terms[4*count + k] + ucu_R_a_t_2 : ucu_R_a_t_2;  /* R_a_ucu_y */
+        terms[5*count + k] = add ? terms[5*count + k] + ucu_R_a_t_3 : ucu_R_a_t_3;  /* R_a_ucu_z */
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        o[0*count + k] = ucu_w_3_x;
+        o[1*count + k] = ucu_w_3_y;
+        o[2*count + k] = ucu_w_3_z;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        o[3*count + k] = ucu_H_a_3_x;
+        o[4*count + k] = ucu_H_a_3_y;
+        o[5*count + k] = ucu_H_a_3_z;
         o[6*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
-            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
-            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2)
+            > TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > TOLERANCE*R(0.8));
     }
 }
 
@@ -4264,28 +4415,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_ucu_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_ucu_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_ucu_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_ucu_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_ucu_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_ucu_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_ucu_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_ucu_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_ucu_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_ucu_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_ucu_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_ucu_z_2;
+        const real R_a_ucu_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_ucu_x + mu_p_x;
+        const real R_a_ucu_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_ucu_y + mu_p_y;
+        const real R_a_ucu_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_ucu_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -4422,67 +4575,69 @@ INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t leg,
         /* (ucu-root_1) amplitude, with the sign of the branch */
         const real ucu_branch_1 = m->ucu_branch_1[i];
         const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        /* (ucu-q_1) displacement of joint 1 */
+        const real ucu_q_1 = angle(-ucu_c_1, ucu_s_1);
         /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
         /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
         /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
+        /* (ucu-q_2) displacement of joint 2 */
+        const real ucu_q_2 = angle(-ucu_s_2, -ucu_c_2);
         /* (ucu-px_4) component along the reference direction */
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_s_2*(-ucu_c_1*ucu_end_p1_r0_y
-            - ucu_end_p1_r0_x*ucu_s_1);
+        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_s_2*(ucu_px_4_t*ucu_s_1 -
+            ucu_c_1*ucu_px_4_t_2);
+        /* (ucu-py_4) component across the reference direction */
+        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
         /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
         /* (ucu-root_4) amplitude, with the sign of the branch */
         const real ucu_branch_4 = m->ucu_branch_4[i];
         const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
-        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        /* (ucu-q_1) displacement of joint 1 */
-        const real ucu_q_1 = angle(ucu_c_1, ucu_s_1);
-        /* (ucu-q_2) displacement of joint 2 */
-        const real ucu_q_2 = angle(-ucu_s_2, ucu_c_2);
         /* (ucu-q_4) displacement of joint 4 */
-        const real ucu_q_4 = angle(-inv_ucu_root_4*ucu_end_p1_r3_y,
-            inv_ucu_root_4*ucu_end_p1_r1_x);
+        const real inv_ucu_root_4 = 1/ucu_root_4;
+        const real ucu_q_4 = angle(-inv_ucu_root_4*ucu_px_4, inv_ucu_root_4*ucu_py_4);
+        /* (ucu-q_1) displacement of joint 1 */
         o[0*count + k] = ucu_q_1;
+        /* (ucu-q_2) displacement of joint 2 */
         o[1*count + k] = ucu_q_2;
+        /* (ucu-q_3) displacement of joint 3 */
         o[2*count + k] = ucu_root_2;
+        /* (ucu-q_4) displacement of joint 4 */
         o[3*count + k] = ucu_q_4;
         o[5*count + k] = (ucu_q_1 + ucu_q_2) + (ucu_root_2 + ucu_q_4);
         o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
@@ -4610,27 +4765,27 @@ INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t leg, size_t
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
         /* (ucu-px_1) component along the reference direction */
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
@@ -4648,128 +4803,130 @@ INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t leg, size_t
         /* (ucu-root_1) amplitude, with the sign of the branch */
         const real ucu_branch_1 = m->ucu_branch_1[i];
         const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
         /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
         /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
         /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
         /* (ucu-px_4) component along the reference direction */
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
-        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
+        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
+        /* (ucu-py_4) component across the reference direction */
+        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
         /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
         /* (ucu-root_4) amplitude, with the sign of the branch */
         const real ucu_branch_4 = m->ucu_branch_4[i];
         const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
         const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
         /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
-        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
-        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
-        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
-        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
-        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
+        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
         /* (ucu-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real ucu_S_dot_x = t_dot_x + omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real ucu_S_dot_x = t_dot_x + omega_y*ucu_q_z - omega_z*ucu_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real ucu_S_dot_y = t_dot_y + omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
+        const real ucu_S_dot_y = t_dot_y + omega_z*ucu_q_x - omega_x*ucu_q_z;
         const real t_dot_z = s[14*w + j];
-        const real ucu_S_dot_z = t_dot_z + omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
-        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
-            + ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
-            + ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
-            + ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
-        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
-        /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = (ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)/ucu_v_1_r0_y;
-        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
-            - ucu_qd_4_t*(ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4));
-        /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_nd_m1_t = ucu_end_p1_r3_x*(omega_x*(axis_y_ucu_axes4_in_base_y*ucu_axis_z_z
-            - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y) +
-            omega_y*(axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
-            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z) +
-            omega_z*(axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
-            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x));
+        const real ucu_S_dot_z = t_dot_z + omega_x*ucu_q_y - omega_y*ucu_q_x;
+        const real ucu_S_dot_t = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_t_2 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_t_3 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_t_4 = ucu_S_dot_t*ucu_s_1 - ucu_S_dot_t_2*ucu_c_1;
+        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_3*ucu_s_2 - ucu_S_dot_t_4*ucu_c_2;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
+        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
+        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
+        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
+        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
         /* (ucu-qd_1) rate of joint 1 */
-        const real ucu_qd_1_t = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
-            - (ucu_nd_m1_t + ucu_qd_4_t*ucu_w_1_t_2 -
-            ucu_end_p1_r3_x*ucu_qd_4_t_2*ucu_s_4)/ucu_end_p1_r5_x;
-        o[0*count + k] = ucu_qd_4_t;
-        o[1*count + k] = ucu_qd_4_t_2;
-        o[2*count + k] = ucu_S_dot_r3_x;
-        o[3*count + k] = ucu_qd_1_t;
-        o[5*count + k] = (ucu_qd_4_t + ucu_qd_4_t_2) + (ucu_S_dot_r3_x + ucu_qd_1_t);
+        const real ucu_qd_1 = (ucu_S_dot_t*ucu_c_1 + ucu_S_dot_t_2*ucu_s_1)/ucu_v_1_in_axes2_z;
+        /* (ucu-qd_2) rate of joint 2 */
+        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_3*ucu_c_2 + ucu_S_dot_t_4*ucu_s_2 -
+            ucu_qd_1*(ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y));
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = ucu_s_2*ucu_s_4;
+        const real ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1;
+        const real ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1;
+        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
+            ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
+            ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
+            ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+        const real ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 -
+            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_qd_4_t_5 = ucu_n_m1_in_axes4_x*(omega_x*(axis_y_ucu_axes4_y*ucu_w_3_z -
+            axis_y_ucu_axes4_z*ucu_w_3_y) + omega_y*(axis_y_ucu_axes4_z*ucu_w_3_x -
+            axis_y_ucu_axes4_x*ucu_w_3_z) + omega_z*(axis_y_ucu_axes4_x*ucu_w_3_y -
+            axis_y_ucu_axes4_y*ucu_w_3_x));
+        const real ucu_qd_4 = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z -
+            (ucu_qd_4_t_5 + ucu_qd_1*ucu_qd_4_t_4 -
+            ucu_n_m1_in_axes4_x*ucu_qd_2*ucu_s_4)/ucu_end_p1_in_axes4_x;
+        /* (ucu-qd_1) rate of joint 1 */
+        o[0*count + k] = ucu_qd_1;
+        /* (ucu-qd_2) rate of joint 2 */
+        o[1*count + k] = ucu_qd_2;
+        /* (ucu-qd_3) rate of joint 3 */
+        o[2*count + k] = ucu_S_dot_in_axes2_x;
+        /* (ucu-qd_4) rate of joint 4 */
+        o[3*count + k] = ucu_qd_4;
+        o[5*count + k] = (ucu_qd_1 + ucu_qd_2) + (ucu_S_dot_in_axes2_x + ucu_qd_4);
         o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
-            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
-            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2)
+            > TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > TOLERANCE*R(0.8));
     }
 }
 
@@ -4913,27 +5070,27 @@ INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t leg
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
         /* (ucu-px_1) component along the reference direction */
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
@@ -4951,211 +5108,223 @@ INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t leg
         /* (ucu-root_1) amplitude, with the sign of the branch */
         const real ucu_branch_1 = m->ucu_branch_1[i];
         const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
         /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
         /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
         /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
         /* (ucu-px_4) component along the reference direction */
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
-        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
+        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
+        /* (ucu-py_4) component across the reference direction */
+        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
         /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
         /* (ucu-root_4) amplitude, with the sign of the branch */
         const real ucu_branch_4 = m->ucu_branch_4[i];
         const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
         const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
         /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
-        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
-        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
-        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
-        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
-        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
-            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
-            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
-            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
-        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
-        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
-        /* (ucu-w_4) force part of reciprocal wrench 4 */
-        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
         /* (ucu-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
         const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
         const real t_dot_x = s[12*w + j];
         const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
-            + ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
-            + ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
-            + ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
-        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
-        /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
-            ucu_S_dot_r0_x*ucu_c_1);
-        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
-            - ucu_qd_4_t*ucu_v_1_r0_x);
-        /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
-        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
-        /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
-        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
-        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
-        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
-        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
-            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
-        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
-            ucu_bias_t*ucu_omega_2_r1_x;
-        /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
-            axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
-            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
-        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
-            omega_z*ucu_axis_z_z;
-        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
+        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1;
+        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
+        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
+        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
+        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
+        const real ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y;
+        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
+        const real ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
+        /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
+        const real ucu_m1_w_4 = -1/ucu_end_p1_in_axes4_x;
         /* (ucu-qd_1) rate of joint 1 */
-        const real ucu_qd_1_t = ucu_omega_tip_z -
-            inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x + ucu_qd_4_t*ucu_w_1_t_2 -
-            ucu_n_m1_t*ucu_qd_4_t_2);
+        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
+        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 +
+            ucu_S_dot_t_5*ucu_s_1);
+        /* (ucu-qd_2) rate of joint 2 */
+        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
+            ucu_qd_1*ucu_v_1_in_axes2_y);
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = ucu_s_2*ucu_s_4;
+        const real ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1;
+        const real ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1;
+        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
+            ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
+            ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
+            ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
+            axis_y_ucu_axes4_z*ucu_w_3_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
+            axis_y_ucu_axes4_x*ucu_w_3_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
+            axis_y_ucu_axes4_y*ucu_w_3_x;
+        const real ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 -
+            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
+            + axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y +
+            omega_z*ucu_w_3_z;
+        const real ucu_qd_4 = ucu_omega_in_axes4_z +
+            ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x + ucu_qd_1*ucu_qd_4_t_4 -
+            ucu_n_m1_in_axes2_z*ucu_qd_2);
+        /* (ucu-omega_1) angular velocity of link 1 */
+        const real ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2;
+        const real ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1;
+        /* (ucu-omega_2) angular velocity of link 2 */
+        const real ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4;
+        const real ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
+        /* (ucu-omega_4) angular velocity of link 4 */
+        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
         /* (ucu-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y;
+        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z;
+        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x;
+        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x;
         /* (ucu-S_ddot) acceleration of the connection point */
         const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
         const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
         const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
-        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-        const real ucu_rel_x = axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
-            axis_x_ucu_axes4_z*ucu_S_ddot_z - ucu_bias_x;
-        const real ucu_rel_y = axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x +
-            axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y + axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z -
-            ucu_bias_y;
-        const real ucu_rel_z = ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y +
-            ucu_S_ddot_z*ucu_axis_z_z + ucu_root_2*(ucu_omega_2_r1_x*ucu_omega_2_r1_x +
-            ucu_omega_2_r1_y*ucu_omega_2_r1_y);
-        /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4;
         /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t - ucu_zeta_2_t;
+        const real ucu_beta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4 - ucu_zeta_2_t;
+        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
+        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
+            ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
+        const real ucu_bias_in_axes4_y = ucu_root_2*(ucu_zeta_2_t +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
+        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+        const real ucu_rel_in_axes4_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
+            axis_x_ucu_axes4_y*ucu_S_ddot_y + axis_x_ucu_axes4_z*ucu_S_ddot_z -
+            ucu_bias_in_axes4_x;
+        const real ucu_rel_in_axes4_y = axis_y_ucu_axes4_x*ucu_S_ddot_x +
+            axis_y_ucu_axes4_y*ucu_S_ddot_y + axis_y_ucu_axes4_z*ucu_S_ddot_z -
+            ucu_bias_in_axes4_y;
+        const real ucu_rel_in_axes4_z = ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y +
+            ucu_S_ddot_z*ucu_w_3_z + ucu_root_2*(ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y);
         /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        const real ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4;
+        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
+            + axis_y_ucu_axes4_z*omega_z;
+        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
+        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
+            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
         /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x +
-            ucu_end_p1_r5_x*ucu_omega_1_t_2*ucu_qd_4_t_2;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
-            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
-            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
+        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_omega_1_in_axes2_y*ucu_qd_2;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
+            ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
+            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
         const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
         /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real ucu_etad_1_t = ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x +
+        const real ucu_etad_1_t = ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x +
             alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
-            ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x + alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z);
+            ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x + alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z);
         const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
         /* (ucu-qdd_1) acceleration of joint 1 */
-        const real ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4);
-        const real ucu_qdd_1_t_2 = inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 -
-            ucu_c_4*ucu_rel_x);
-        const real ucu_qdd_1_t_3 = inv_ucu_end_p1_r5_x*(ucu_etad_1 + ucu_n_m1_t*ucu_qdd_1_t_2 +
-            ucu_qdd_1_t*ucu_w_1_t_2);
-        o[0*count + k] = ucu_qdd_1_t;
-        o[1*count + k] = -ucu_qdd_1_t_2;
-        o[2*count + k] = ucu_rel_z;
-        o[3*count + k] = -ucu_qdd_1_t_3;
-        o[5*count + k] = (ucu_qdd_1_t + ucu_qdd_1_t_2) + (ucu_rel_z + ucu_qdd_1_t_3);
+        const real ucu_qdd_1 = inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y +
+            ucu_rel_in_axes4_x*ucu_s_4);
+        /* (ucu-qdd_2) acceleration of joint 2 */
+        const real ucu_qdd_2 = -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y +
+            ucu_rel_in_axes4_y*ucu_s_4 - ucu_c_4*ucu_rel_in_axes4_x);
+        /* (ucu-qdd_4) acceleration of joint 4 */
+        const real ucu_qdd_4 = ucu_m1_w_4*(ucu_etad_1 + ucu_qd_4_t_4*ucu_qdd_1 -
+            ucu_n_m1_in_axes2_z*ucu_qdd_2);
+        /* (ucu-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = ucu_qdd_1;
+        /* (ucu-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = ucu_qdd_2;
+        /* (ucu-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = ucu_rel_in_axes4_z;
+        /* (ucu-qdd_4) acceleration of joint 4 */
+        o[3*count + k] = ucu_qdd_4;
+        o[5*count + k] = (ucu_qdd_1 + ucu_qdd_2) + (ucu_rel_in_axes4_z + ucu_qdd_4);
         o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
-            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
-            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2)
+            > TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > TOLERANCE*R(0.8));
     }
 }
 
@@ -5300,27 +5469,27 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
         /* (ucu-px_1) component along the reference direction */
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
@@ -5338,345 +5507,369 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (ucu-root_1) amplitude, with the sign of the branch */
         const real ucu_branch_1 = m->ucu_branch_1[i];
         const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
         /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
         /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
         /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
         /* (ucu-px_4) component along the reference direction */
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1;
-        const real ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2;
+        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
+        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
+        /* (ucu-py_4) component across the reference direction */
+        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
         /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
         /* (ucu-root_4) amplitude, with the sign of the branch */
         const real ucu_branch_4 = m->ucu_branch_4[i];
         const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
         const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
         /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_t = ucu_c_2*ucu_c_4;
-        const real ucu_v_1_t_2 = ucu_c_2*ucu_s_4;
-        const real ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2;
-        const real ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
-        const real ucu_w_1_t = ucu_s_2*ucu_s_4;
-        const real axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t;
-        const real axis_y_ucu_axes4_in_base_x = axis_y_ucu_axes4_r4_x*ucu_base_frame_xx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_xy + ucu_base_frame_xz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_y = axis_y_ucu_axes4_r4_x*ucu_base_frame_yx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_yy + ucu_base_frame_yz*ucu_v_1_t_2;
-        const real axis_y_ucu_axes4_in_base_z = axis_y_ucu_axes4_r4_x*ucu_base_frame_zx +
-            axis_y_ucu_axes4_r4_y*ucu_base_frame_zy + ucu_base_frame_zz*ucu_v_1_t_2;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
-            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
-            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
-            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
-        const real ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4;
-        const real ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real inv_ucu_v_1_r0_y = 1/ucu_v_1_r0_y;
-        /* (ucu-w_4) force part of reciprocal wrench 4 */
-        const real inv_ucu_end_p1_r5_x = 1/ucu_end_p1_r5_x;
+        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
         /* (ucu-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y;
+        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
         const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x;
+        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
+        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
         const real t_dot_x = s[12*w + j];
         const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-        const real ucu_S_dot_r0_x = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx
-            + ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_r0_y = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy
-            + ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_r0_z = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz
-            + ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1;
-        const real ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2;
-        /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 -
-            ucu_S_dot_r0_x*ucu_c_1);
-        const real ucu_qd_4_t_2 = inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2
-            - ucu_qd_4_t*ucu_v_1_r0_x);
-        /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_t = ucu_qd_4_t*ucu_s_2;
-        const real ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t;
-        /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2;
-        const real ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2;
-        const real ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t;
-        const real ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2;
-        const real ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2;
-        const real ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x;
-        const real ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y;
-        const real ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y;
-        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_r3_x;
-        const real ucu_bias_x = ucu_bias_t*ucu_omega_2_r1_y +
-            ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x + ucu_s_4*ucu_zeta_2_y);
-        const real ucu_bias_y = ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) -
-            ucu_bias_t*ucu_omega_2_r1_x;
-        /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_omega_tip_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y +
-            axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_tip_y = axis_y_ucu_axes4_in_base_x*omega_x +
-            axis_y_ucu_axes4_in_base_y*omega_y + axis_y_ucu_axes4_in_base_z*omega_z;
-        const real ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y +
-            omega_z*ucu_axis_z_z;
-        const real ucu_nd_m1_x = ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_2_r1_x;
-        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
-        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
-        const real ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x;
-        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
-        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
-        const real ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y;
-        const real ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2;
+        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx;
+        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy;
+        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+            ucu_S_dot_z*ucu_base_frame_zz;
+        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1;
+        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2;
+        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
+        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
+        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
+        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
+        const real ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y;
+        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
+        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
+        const real ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4;
+        /* (ucu-w_1) force part of reciprocal wrench 1 */
+        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
+        /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
+        const real ucu_m1_w_4 = -1/ucu_end_p1_in_axes4_x;
         /* (ucu-qd_1) rate of joint 1 */
-        const real ucu_qd_1_t = ucu_omega_tip_z -
-            inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x + ucu_qd_4_t*ucu_w_1_t_2 -
-            ucu_n_m1_t*ucu_qd_4_t_2);
+        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
+        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 +
+            ucu_S_dot_t_5*ucu_s_1);
+        /* (ucu-qd_2) rate of joint 2 */
+        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
+            ucu_qd_1*ucu_v_1_in_axes2_y);
+        /* (ucu-qd_4) rate of joint 4 */
+        const real ucu_qd_4_t = ucu_s_2*ucu_s_4;
+        const real ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1;
+        const real ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1;
+        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
+            ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
+            ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
+            ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
+            axis_y_ucu_axes4_z*ucu_w_3_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
+            axis_y_ucu_axes4_x*ucu_w_3_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
+            axis_y_ucu_axes4_y*ucu_w_3_x;
+        const real ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 -
+            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
+            + axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y +
+            omega_z*ucu_w_3_z;
+        const real ucu_qd_4 = ucu_omega_in_axes4_z +
+            ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x + ucu_qd_1*ucu_qd_4_t_4 -
+            ucu_n_m1_in_axes2_z*ucu_qd_2);
+        /* (ucu-omega_1) angular velocity of link 1 */
+        const real ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2;
+        const real ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1;
+        /* (ucu-omega_2) angular velocity of link 2 */
+        const real ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4;
+        const real ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4;
+        /* (ucu-W_2) centripetal tensor of link 2 */
+        const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
+        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
+        const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
+        const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
+        /* (ucu-omega_4) angular velocity of link 4 */
+        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
+        /* (ucu-W_4) centripetal tensor of link 4 */
+        const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
+        const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
         /* (ucu-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y;
+        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z;
+        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x;
+        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x;
         /* (ucu-S_ddot) acceleration of the connection point */
         const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
         const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
         const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
-        const real ucu_S_ddot_tip_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
+        const real ucu_S_ddot_in_axes4_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
             axis_x_ucu_axes4_y*ucu_S_ddot_y + axis_x_ucu_axes4_z*ucu_S_ddot_z;
-        const real ucu_S_ddot_tip_y = axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x +
-            axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y + axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z;
-        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-        const real ucu_rel_x = ucu_S_ddot_tip_x - ucu_bias_x;
-        const real ucu_rel_y = ucu_S_ddot_tip_y - ucu_bias_y;
-        /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t;
+        const real ucu_S_ddot_in_axes4_y = axis_y_ucu_axes4_x*ucu_S_ddot_x +
+            axis_y_ucu_axes4_y*ucu_S_ddot_y + axis_y_ucu_axes4_z*ucu_S_ddot_z;
+        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4;
         /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t;
+        const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
         /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_x = ucu_zeta_4_x - ucu_zeta_2_t;
+        const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t;
+        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
+        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
+            ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
+        const real ucu_bias_in_axes4_y = ucu_root_2*(ucu_zeta_2_t +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
+        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+        const real ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x;
+        const real ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y;
         /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_nd_m1_z = ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y
-            - ucu_end_p1_r5_y*ucu_omega_4_z;
+        const real ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4;
+        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
+            + axis_y_ucu_axes4_z*omega_z;
+        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
+        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
+            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
+            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
         /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) +
-            ucu_nd_m1_z*(ucu_omega_4_z - ucu_omega_tip_z) + (ucu_omega_2_r1_y -
-            ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z + ucu_end_p1_r5_x*ucu_omega_2_r1_x);
+        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x -
+            ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
+            ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
+            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
         const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
         /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real ucu_etad_1_t = ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x +
+        const real ucu_etad_1_t = ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x +
             alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
-            ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x + alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z);
+            ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x + alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z);
         const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
         /* (ucu-qdd_1) acceleration of joint 1 */
-        const real ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4);
-        const real ucu_qdd_1_t_2 = inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 -
-            ucu_c_4*ucu_rel_x);
+        const real ucu_qdd_1 = inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y +
+            ucu_rel_in_axes4_x*ucu_s_4);
+        /* (ucu-qdd_2) acceleration of joint 2 */
+        const real ucu_qdd_2 = -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y +
+            ucu_rel_in_axes4_y*ucu_s_4 - ucu_c_4*ucu_rel_in_axes4_x);
+        /* (ucu-alpha_1) angular acceleration of link 1 */
+        const real ucu_alpha_1_in_axes2_x = ucu_qdd_1*ucu_s_2;
+        const real ucu_alpha_1_in_axes2_y = ucu_c_2*ucu_qdd_1;
+        /* (ucu-alpha_2) angular acceleration of link 2 */
+        const real ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x;
+        const real ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz;
+        /* (ucu-B_2) acceleration tensor of link 2 */
+        const real ucu_B_2_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2;
+        const real ucu_B_2_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2;
+        const real ucu_B_2_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_in_axes2_y;
+        const real ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x;
+        /* (ucu-alpha_4) angular acceleration of link 4 */
+        const real ucu_alpha_4_in_axes4_x = ucu_zeta_4_in_axes4_x + ucu_alpha_2_in_axes2_y*ucu_c_4
+            + ucu_qdd_2*ucu_s_4;
+        const real ucu_alpha_4_in_axes4_y = ucu_c_4*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_s_4 -
+            ucu_omega_2_in_axes4_x*ucu_qd_4;
+        const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x + ucu_m1_w_4*(ucu_etad_1 +
+            ucu_qd_4_t_4*ucu_qdd_1 - ucu_n_m1_in_axes2_z*ucu_qdd_2);
+        /* (ucu-B_4) acceleration tensor of link 4 */
+        const real ucu_B_4_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z;
+        const real ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y;
+        const real ucu_B_4_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z;
+        const real ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x;
+        const real ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y;
+        const real ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x;
         /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real ucu_acc_4_x = ucu_S_ddot_tip_x - axis_x_ucu_axes4_x*gravity_x -
+        const real ucu_acc_4_in_axes4_x = ucu_S_ddot_in_axes4_x - axis_x_ucu_axes4_x*gravity_x -
             axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_y = ucu_S_ddot_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
-            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z;
-        const real ucu_acc_4_z = ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y +
-            ucu_S_ddot_z*ucu_axis_z_z - gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y -
-            gravity_z*ucu_axis_z_z;
-        /* (ucu-alpha_1) angular acceleration of link 1 */
-        const real ucu_alpha_1_t = ucu_qdd_1_t*ucu_s_2;
-        const real ucu_alpha_1_t_2 = ucu_c_2*ucu_qdd_1_t;
-        /* (ucu-alpha_2) angular acceleration of link 2 */
-        const real ucu_alpha_2_x = ucu_alpha_1_t - ucu_zeta_2_x;
-        const real ucu_alpha_2_y = -ucu_alpha_1_t_2 - ucu_zeta_2_y;
-        /* (ucu-alpha_4) angular acceleration of link 4 */
-        const real ucu_alpha_4_x = ucu_zeta_4_x + ucu_alpha_2_y*ucu_c_4 - ucu_qdd_1_t_2*ucu_s_4;
-        const real ucu_alpha_4_y = -ucu_alpha_2_y*ucu_s_4 - ucu_c_4*ucu_qdd_1_t_2 -
-            ucu_omega_2_r1_x*ucu_qd_1_t;
-        const real ucu_alpha_4_z = ucu_alpha_2_x - inv_ucu_end_p1_r5_x*(ucu_etad_1 +
-            ucu_n_m1_t*ucu_qdd_1_t_2 + ucu_qdd_1_t*ucu_w_1_t_2);
-        /* (ucu-W_4) centripetal tensor of link 4 */
-        const real ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z;
-        const real ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z;
-        const real ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z;
-        /* (ucu-B_4) acceleration tensor of link 4 */
-        const real ucu_B_4_xy = ucu_W_2_xy_2 - ucu_alpha_4_z;
-        const real ucu_B_4_xz = ucu_W_4_xz + ucu_alpha_4_y;
-        const real ucu_B_4_yx = ucu_W_2_xy_2 + ucu_alpha_4_z;
-        const real ucu_B_4_yz = ucu_W_4_yz - ucu_alpha_4_x;
-        const real ucu_B_4_zx = ucu_W_4_xz - ucu_alpha_4_y;
-        const real ucu_B_4_zy = ucu_W_4_yz + ucu_alpha_4_x;
+        const real ucu_acc_4_in_axes4_y = ucu_S_ddot_in_axes4_y - axis_y_ucu_axes4_x*gravity_x -
+            axis_y_ucu_axes4_y*gravity_y - axis_y_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_in_axes4_z = ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y +
+            ucu_S_ddot_z*ucu_w_3_z - gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y -
+            gravity_z*ucu_w_3_z;
         /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-        const real ucu_J_4_xy = m->ucu_J_4_xy[i];
-        const real ucu_J_4_xz = m->ucu_J_4_xz[i];
-        const real ucu_J_4_yz = m->ucu_J_4_yz[i];
-        const real ucu_Sigma_4_yy = m->ucu_Sigma_4_yy[i];
-        const real ucu_Sigma_4_zz = m->ucu_Sigma_4_zz[i];
-        const real ucu_h_4_x = m->ucu_h_4_x[i];
-        const real ucu_h_4_z = m->ucu_h_4_z[i];
-        const real ucu_mu_4_x = ucu_B_4_yx*ucu_J_4_xy + ucu_B_4_zy*ucu_Sigma_4_yy +
-            ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) + ucu_acc_4_z*ucu_h_4_z -
-            ucu_B_4_yz*ucu_Sigma_4_zz - ucu_B_4_zx*ucu_J_4_yz - ucu_acc_4_y*ucu_h_4_x;
-        const real ucu_Sigma_4_xx = m->ucu_Sigma_4_xx[i];
-        const real ucu_h_4_y = m->ucu_h_4_y[i];
-        const real ucu_mu_4_y = ucu_B_4_xz*ucu_Sigma_4_zz + ucu_B_4_zy*ucu_J_4_yz +
-            ucu_acc_4_x*ucu_h_4_x - ucu_B_4_xy*ucu_J_4_xz - ucu_B_4_zx*ucu_Sigma_4_xx -
-            ucu_J_4_xy*(ucu_W_2_t_4 - ucu_W_4_t) - ucu_acc_4_z*ucu_h_4_y;
-        const real ucu_mu_4_z = ucu_B_4_xz*ucu_J_4_xz + ucu_B_4_yx*ucu_Sigma_4_xx +
-            ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5) + ucu_acc_4_y*ucu_h_4_y -
-            ucu_B_4_xy*ucu_Sigma_4_yy - ucu_B_4_yz*ucu_J_4_xy - ucu_acc_4_x*ucu_h_4_z;
-        /* (ucu-B_2) acceleration tensor of link 2 */
-        const real ucu_B_2_xy = ucu_qdd_1_t_2 - ucu_W_2_xy;
-        const real ucu_B_2_yx = -ucu_W_2_xy - ucu_qdd_1_t_2;
-        const real ucu_B_2_zx = ucu_zeta_2_y - ucu_alpha_2_y;
-        const real ucu_B_2_zy = ucu_alpha_2_x - ucu_zeta_2_x;
+        const real ucu_mu_4_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
+        const real ucu_mu_4_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
+        const real ucu_mu_4_t_3 = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
+        const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
+        const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
+        const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
+        const real ucu_Sigma_4_in_axes4_yy = m->ucu_Sigma_4_in_axes4_yy[i];
+        const real ucu_Sigma_4_in_axes4_zz = m->ucu_Sigma_4_in_axes4_zz[i];
+        const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
+        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
+        const real ucu_mu_4_in_axes4_x = ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy +
+            ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy + ucu_J_4_in_spec4_xz*(ucu_mu_4_t_2 -
+            ucu_mu_4_t_3) + ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z -
+            ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz - ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz
+            - ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x;
+        const real ucu_Sigma_4_in_axes4_xx = m->ucu_Sigma_4_in_axes4_xx[i];
+        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
+        const real ucu_mu_4_in_axes4_y = ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz +
+            ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz + ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x -
+            ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz - ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx
+            - ucu_J_4_in_spec4_xy*(ucu_mu_4_t - ucu_mu_4_t_3) -
+            ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y;
+        const real ucu_mu_4_in_axes4_z = ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_J_4_in_spec4_yz*(ucu_mu_4_t -
+            ucu_mu_4_t_2) + ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy - ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy
+            - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z;
         /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ucu_J_2_xy = m->ucu_J_2_xy[i];
-        const real ucu_J_2_xz = m->ucu_J_2_xz[i];
-        const real ucu_J_2_yz = m->ucu_J_2_yz[i];
-        const real ucu_Sigma_2_yy = m->ucu_Sigma_2_yy[i];
-        const real ucu_Sigma_2_zz = m->ucu_Sigma_2_zz[i];
-        const real ucu_h_2_y = m->ucu_h_2_y[i];
-        const real ucu_h_2_z = m->ucu_h_2_z[i];
-        const real ucu_mu_2_x = ucu_B_2_yx*ucu_J_2_xy + ucu_B_2_zx*ucu_J_2_xz +
-            ucu_B_2_zy*ucu_Sigma_2_yy + ucu_Sigma_2_zz*ucu_alpha_1_t + ucu_g_r1_x*ucu_h_2_z +
-            ucu_g_r3_y*ucu_h_2_y - ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3);
-        const real ucu_Sigma_2_xx = m->ucu_Sigma_2_xx[i];
-        const real ucu_h_2_x = m->ucu_h_2_x[i];
-        const real ucu_mu_2_y = ucu_B_2_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x -
-            ucu_B_2_zx*ucu_Sigma_2_xx - ucu_B_2_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t -
-            ucu_W_2_t_3) - ucu_Sigma_2_zz*ucu_alpha_1_t_2 - ucu_g_r3_x*ucu_h_2_y;
-        const real ucu_mu_2_z = ucu_B_2_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_t +
-            ucu_J_2_yz*ucu_alpha_1_t_2 - ucu_B_2_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t -
-            ucu_W_2_t_2) - ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x;
+        const real ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
+        const real ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
+        const real ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2;
+        const real ucu_mu_2_t = m->ucu_mu_2_t[i];
+        const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
+        const real ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1;
+        const real ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
+        const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
+        const real ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_mu_2_t_3*ucu_s_2;
+        const real ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_t_7*ucu_s_2;
+        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
+        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
+        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
+        const real ucu_Sigma_2_in_axes2_yy = m->ucu_Sigma_2_in_axes2_yy[i];
+        const real ucu_Sigma_2_in_axes2_zz = m->ucu_Sigma_2_in_axes2_zz[i];
+        const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
+        const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
+        const real ucu_mu_2_in_axes2_x = ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy +
+            ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz + ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy
+            + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
+            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
+            ucu_mu_2_t_6);
+        const real ucu_Sigma_2_in_axes2_xx = m->ucu_Sigma_2_in_axes2_xx[i];
+        const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
+        const real ucu_mu_2_in_axes2_y = ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x -
+            ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx - ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz
+            - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6) -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_y;
+        const real ucu_mu_2_in_axes2_z = ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
+            ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
+            ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
+            ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
         /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real ucu_N_2_x = ucu_mu_2_x + ucu_mu_4_z;
-        const real ucu_N_2_y = ucu_mu_2_y + ucu_c_4*ucu_mu_4_x - ucu_mu_4_y*ucu_s_4;
-        const real ucu_N_2_z = ucu_mu_2_z + ucu_c_4*ucu_mu_4_y + ucu_mu_4_x*ucu_s_4;
-        /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
+        const real ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
+        const real ucu_N_2_in_axes2_y = ucu_mu_2_in_axes2_y + ucu_c_4*ucu_mu_4_in_axes4_x -
+            ucu_mu_4_in_axes4_y*ucu_s_4;
+        const real ucu_N_2_in_axes2_z = ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_y +
+            ucu_mu_4_in_axes4_x*ucu_s_4;
+        /* (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
            freedoms */
-        const real ucu_G_t = inv_ucu_end_p1_r5_x*ucu_mu_4_z;
-        const real ucu_G_t_2 = inv_ucu_root_2*(ucu_N_2_z + ucu_G_t*ucu_n_m1_t);
-        const real ucu_G_t_3 = inv_ucu_v_1_r0_y*(ucu_G_t*ucu_w_1_t_2 + ucu_G_t_2*ucu_v_1_r0_x +
-            ucu_N_2_y*ucu_c_2 - ucu_N_2_x*ucu_s_2);
+        const real ucu_G_m1 = ucu_m1_w_4*ucu_mu_4_in_axes4_z;
         /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ucu_c_x = ucu_G_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) -
-            ucu_B_4_xy*ucu_h_4_z - ucu_B_4_xz*ucu_h_4_x - ucu_G_t_2*ucu_c_4;
-        const real ucu_c_y = ucu_G_t_2*ucu_s_4 + ucu_G_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 +
-            ucu_W_4_t) - ucu_B_4_yx*ucu_h_4_y - ucu_B_4_yz*ucu_h_4_x;
+        const real ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z - ucu_G_m1*ucu_n_m1_in_axes2_z);
+        const real ucu_c_t_2 = inv_ucu_v_1_in_axes2_z*(ucu_c_t*ucu_v_1_in_axes2_y -
+            ucu_G_m1*ucu_qd_4_t_4 - ucu_N_2_in_axes2_x*ucu_s_2 - ucu_N_2_in_axes2_y*ucu_c_2);
+        const real ucu_c_in_axes4_x = ucu_c_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_t_2 +
+            ucu_mu_4_t_3) - ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z -
+            ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_4*ucu_c_t;
+        const real ucu_c_in_axes4_y = ucu_c_4*ucu_c_t_2 + ucu_c_t*ucu_s_4 +
+            ucu_h_4_in_spec4_z*(ucu_mu_4_t + ucu_mu_4_t_3) -
+            ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x;
+        /* (ucu-c_m) moment of the leg on the platform without actuation */
+        const real ucu_c_m_in_axes4_x = -ucu_G_m1*ucu_n_m1_in_axes4_x;
+        const real ucu_c_m_x = axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x -
+            ucu_mu_4_in_axes4_z*ucu_w_3_x;
+        const real ucu_c_m_y = axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x -
+            ucu_mu_4_in_axes4_z*ucu_w_3_y;
+        const real ucu_c_m_z = axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x -
+            ucu_mu_4_in_axes4_z*ucu_w_3_z;
         /* (ucu-c_true) leg force on the platform without actuation, the last link's mass included */
         const real ucu_link4_mass = m->ucu_link4_mass[i];
-        const real ucu_c_true_x = ucu_c_x - ucu_acc_4_x*ucu_link4_mass;
-        const real ucu_c_true_y = ucu_c_y - ucu_acc_4_y*ucu_link4_mass;
-        const real ucu_c_true_z = ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5) - ucu_B_4_zx*ucu_h_4_y -
-            ucu_B_4_zy*ucu_h_4_z - ucu_acc_4_z*ucu_link4_mass;
-        const real ucu_c_true_in_base_x = axis_x_ucu_axes4_x*ucu_c_true_x +
-            axis_y_ucu_axes4_in_base_x*ucu_c_true_y + ucu_axis_z_x*ucu_c_true_z;
-        const real ucu_c_true_in_base_y = axis_x_ucu_axes4_y*ucu_c_true_x +
-            axis_y_ucu_axes4_in_base_y*ucu_c_true_y + ucu_axis_z_y*ucu_c_true_z;
-        const real ucu_c_true_in_base_z = axis_x_ucu_axes4_z*ucu_c_true_x +
-            axis_y_ucu_axes4_in_base_z*ucu_c_true_y + ucu_axis_z_z*ucu_c_true_z;
-        /* (ucu-G_m) moment at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real ucu_G_m_x = ucu_G_t*ucu_end_p1_r3_x;
+        const real ucu_c_true_in_axes4_x = ucu_c_in_axes4_x - ucu_acc_4_in_axes4_x*ucu_link4_mass;
+        const real ucu_c_true_in_axes4_y = ucu_c_in_axes4_y - ucu_acc_4_in_axes4_y*ucu_link4_mass;
+        const real ucu_c_true_in_axes4_z = ucu_h_4_in_spec4_x*(ucu_mu_4_t + ucu_mu_4_t_2) -
+            ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z -
+            ucu_acc_4_in_axes4_z*ucu_link4_mass;
+        const real ucu_c_true_x = axis_x_ucu_axes4_x*ucu_c_true_in_axes4_x +
+            axis_y_ucu_axes4_x*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*ucu_w_3_x;
+        const real ucu_c_true_y = axis_x_ucu_axes4_y*ucu_c_true_in_axes4_x +
+            axis_y_ucu_axes4_y*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*ucu_w_3_y;
+        const real ucu_c_true_z = axis_x_ucu_axes4_z*ucu_c_true_in_axes4_x +
+            axis_y_ucu_axes4_z*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*ucu_w_3_z;
+        /* (ucu-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = ucu_c_true_x;
+        o[1*count + k] = ucu_c_true_y;
+        o[2*count + k] = ucu_c_true_z;
         /* (ucu-c_m) moment of the leg on the platform without actuation */
-        const real ucu_c_m_in_base_x = axis_x_ucu_axes4_x*ucu_G_m_x - ucu_axis_z_x*ucu_mu_4_z;
-        const real ucu_c_m_in_base_y = axis_x_ucu_axes4_y*ucu_G_m_x - ucu_axis_z_y*ucu_mu_4_z;
-        const real ucu_c_m_in_base_z = axis_x_ucu_axes4_z*ucu_G_m_x - ucu_axis_z_z*ucu_mu_4_z;
-        o[0*count + k] = ucu_c_true_in_base_x;
-        o[1*count + k] = ucu_c_true_in_base_y;
-        o[2*count + k] = ucu_c_true_in_base_z;
-        o[3*count + k] = ucu_c_m_in_base_x;
-        o[4*count + k] = ucu_c_m_in_base_y;
-        o[5*count + k] = ucu_c_m_in_base_z;
-        o[6*count + k] = ucu_axis_z_x;
-        o[7*count + k] = ucu_axis_z_y;
-        o[8*count + k] = ucu_axis_z_z;
+        o[3*count + k] = ucu_c_m_x;
+        o[4*count + k] = ucu_c_m_y;
+        o[5*count + k] = ucu_c_m_z;
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        o[6*count + k] = ucu_w_3_x;
+        o[7*count + k] = ucu_w_3_y;
+        o[8*count + k] = ucu_w_3_z;
         o[9*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
-            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
-            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2)
+            > TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > TOLERANCE*R(0.8));
     }
 }
 
@@ -5751,13 +5944,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -5823,85 +6018,87 @@ INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t leg, size_t l
         /* (ucu-root_1) amplitude, with the sign of the branch */
         const real ucu_branch_1 = m->ucu_branch_1[i];
         const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
         /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
         /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
         /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t;
+        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
         /* (ucu-px_4) component along the reference direction */
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_s_2*(-ucu_c_1*ucu_end_p1_r0_y
-            - ucu_end_p1_r0_x*ucu_s_1);
+        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_s_2*(ucu_px_4_t*ucu_s_1 -
+            ucu_c_1*ucu_px_4_t_2);
+        /* (ucu-py_4) component across the reference direction */
+        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
         /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
         /* (ucu-root_4) amplitude, with the sign of the branch */
         const real ucu_branch_4 = m->ucu_branch_4[i];
         const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
         const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
         /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ucu_g_r0_x = m->ucu_g_r0_x[i];
-        const real ucu_g_r0_y = m->ucu_g_r0_y[i];
-        const real ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1;
+        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
         /* (potential) potential energy */
-        const real ucu_b_r0_x = m->ucu_b_r0_x[i];
-        const real ucu_b_r0_y = m->ucu_b_r0_y[i];
-        const real ucu_b_r1_y = -ucu_b_r0_x*ucu_s_1 - ucu_b_r0_y*ucu_c_1;
-        const real ucu_b_r0_z = m->ucu_b_r0_z[i];
-        const real ucu_g_r0_z = m->ucu_g_r0_z[i];
-        const real ucu_h_2_x = m->ucu_h_2_x[i];
-        const real ucu_h_2_y = m->ucu_h_2_y[i];
-        const real ucu_h_2_z = m->ucu_h_2_z[i];
-        const real ucu_h_4_x = m->ucu_h_4_x[i];
-        const real ucu_h_4_y = m->ucu_h_4_y[i];
-        const real ucu_h_4_z = m->ucu_h_4_z[i];
+        const real ucu_mu_2_t = m->ucu_mu_2_t[i];
+        const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
+        const real ucu_potential_t_4 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
+        const real ucu_potential_t = m->ucu_potential_t[i];
+        const real ucu_potential_t_2 = m->ucu_potential_t_2[i];
+        const real ucu_potential_t_5 = ucu_c_1*ucu_potential_t_2 - ucu_potential_t*ucu_s_1;
+        const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
+        const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
+        const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
+        const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
+        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
+        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
         const real ucu_link2_mass = m->ucu_link2_mass[i];
-        const real ucu_potential_t = (ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x)*(ucu_h_2_y +
-            ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 + ucu_link2_mass*(ucu_b_r0_y*ucu_s_1 -
-            ucu_b_r0_x*ucu_c_1)) + (-ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2)*(ucu_c_4*ucu_h_4_y +
-            ucu_link2_mass*(-ucu_b_r0_z*ucu_c_2 - ucu_b_r1_y*ucu_s_2) - ucu_h_2_z -
-            ucu_h_4_z*ucu_s_4) + (ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y)*(ucu_h_2_x + ucu_h_4_x
-            + ucu_link2_mass*(ucu_b_r0_z*ucu_s_2 - ucu_b_r1_y*ucu_c_2));
-        terms[0*count + k] = add ? terms[0*count + k] + ucu_potential_t : ucu_potential_t;  /* total_ucu */
+        const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
+        const real ucu_potential_t_3 = m->ucu_potential_t_3[i];
+        const real ucu_potential_t_6 = (ucu_c_1*ucu_mu_2_t +
+            ucu_mu_2_t_2*ucu_s_1)*(ucu_h_2_in_spec2_y + ucu_c_4*ucu_h_4_in_spec4_z +
+            ucu_h_4_in_spec4_y*ucu_s_4 + ucu_link2_mass*(ucu_c_1*ucu_potential_t +
+            ucu_potential_t_2*ucu_s_1)) + (ucu_c_2*ucu_mu_2_t_3 -
+            ucu_potential_t_4*ucu_s_2)*(ucu_c_4*ucu_h_4_in_spec4_y +
+            ucu_link2_mass*(ucu_c_2*ucu_potential_t_3 - ucu_potential_t_5*ucu_s_2) -
+            ucu_h_2_in_spec2_z - ucu_h_4_in_spec4_z*ucu_s_4) + (ucu_c_2*ucu_potential_t_4 +
+            ucu_mu_2_t_3*ucu_s_2)*(ucu_h_2_in_spec2_x + ucu_h_4_in_spec4_x +
+            ucu_link2_mass*(ucu_c_2*ucu_potential_t_5 + ucu_potential_t_3*ucu_s_2));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_potential_t_6 : ucu_potential_t_6;  /* potential_t_2 */
         o[0*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1);
@@ -5920,8 +6117,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_ucu = sums[0*w + k];
-        const real potential_ = -potential_t - total_ucu;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5991,6 +6189,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -6011,27 +6210,27 @@ INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t leg, size_t l
         const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_in_base_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
             R_xz*ucu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ucu_q_in_base_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
             R_yz*ucu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ucu_q_in_base_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
             R_zz*ucu_platform_point_z;
         const real t_x = s[0*w + j];
         const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x;
+        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
         const real t_y = s[1*w + j];
         const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y;
+        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
         const real t_z = s[2*w + j];
         const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z;
+        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
         /* (ucu-px_1) component along the reference direction */
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
@@ -6049,111 +6248,112 @@ INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t leg, size_t l
         /* (ucu-root_1) amplitude, with the sign of the branch */
         const real ucu_branch_1 = m->ucu_branch_1[i];
         const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
+        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ucu_root_1 = 1/ucu_root_1;
+        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
+        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
         /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_t = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
             ucu_S_z*ucu_base_frame_zz;
         /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t;
+        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
         /* (ucu-root_2) amplitude, with the sign of the branch */
         const real ucu_branch_2 = m->ucu_branch_2[i];
         const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
         /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
         /* (ucu-px_4) component along the reference direction */
         const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
         const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
         const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_end_p1_r0_x = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
             R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
             R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
             R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_end_p1_r0_y = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
             R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
             R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
             R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_end_p1_r0_z = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
             R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
             R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
             R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x;
-        const real ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z -
-            inv_ucu_root_2*ucu_xi_1_t*(-ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1);
+        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 +
+            inv_ucu_root_2*ucu_xi_1_in_axes1_z*(ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2);
+        /* (ucu-py_4) component across the reference direction */
+        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
         /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y;
+        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
         /* (ucu-root_4) amplitude, with the sign of the branch */
         const real ucu_branch_4 = m->ucu_branch_4[i];
         const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
         const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y;
+        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
         /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_axis_z_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_axis_z_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_axis_z_z = inv_ucu_root_2*ucu_S_z;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4;
+        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
         /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_r0_y = ucu_c_2*ucu_c_4*ucu_c_4*ucu_root_2 +
+        const real ucu_v_1_in_axes2_z = -ucu_c_2*ucu_c_4*ucu_c_4*ucu_root_2 -
             ucu_c_2*ucu_root_2*ucu_s_4*ucu_s_4;
-        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        const real ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z;
-        const real ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x;
-        const real ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real ucu_spread_t = b_c_x - ucu_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real ucu_spread_t_2 = b_c_y - ucu_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real ucu_spread_t_3 = b_c_z - ucu_platform_point_z;
-        const real ucu_spread_t_4 = ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 +
-            ucu_spread_t_3*ucu_spread_t_3;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_pivot_size = magnitude(ucu_rho2_1);
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_pivot_size_2 = magnitude(ucu_rho2_2);
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_pivot_size_3 = magnitude(ucu_rho2_4);
         /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_pivot_size_4 = magnitude(ucu_end_p1_r5_x);
-        const real ucu_pivot_size_5 = magnitude(ucu_root_2);
-        const real ucu_pivot_size_6 = magnitude(ucu_v_1_r0_y);
+        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
+        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
+        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
         /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real ucu_pivot_size = magnitude(ucu_rho2_1);
+        const real ucu_pivot_size_2 = magnitude(ucu_rho2_2);
+        const real ucu_pivot_size_3 = magnitude(ucu_rho2_4);
+        const real ucu_pivot_size_4 = magnitude(ucu_end_p1_in_axes4_x);
+        const real ucu_pivot_size_5 = magnitude(ucu_root_2);
+        const real ucu_pivot_size_6 = magnitude(ucu_v_1_in_axes2_z);
         const real ucu_least_pivots =
             lesser(lesser(lesser(lesser(lesser(R(1.25)*root(ucu_pivot_size),
             R(1.25)*root(ucu_pivot_size_2)), root(ucu_pivot_size_3)), ucu_pivot_size_4),
             R(1.25)*ucu_pivot_size_5), R(1.25)*ucu_pivot_size_6);
-        terms[0*count + k] = add ? terms[0*count + k] + ucu_spread_t_4 : ucu_spread_t_4;  /* total_ucu */
-        o[0*count + k] = ucu_axis_z_x;
-        o[1*count + k] = ucu_axis_z_y;
-        o[2*count + k] = ucu_axis_z_z;
-        o[3*count + k] = ucu_H_a_3_t;
-        o[4*count + k] = ucu_H_a_3_t_2;
-        o[5*count + k] = ucu_H_a_3_t_3;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        const real ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y;
+        const real ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z;
+        const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real ucu_spread_t = b_c_in_platform_x - ucu_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real ucu_spread_t_2 = b_c_in_platform_y - ucu_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real ucu_spread_t_3 = b_c_in_platform_z - ucu_platform_point_z;
+        const real ucu_spread_t_4 = ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 +
+            ucu_spread_t_3*ucu_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + ucu_spread_t_4 : ucu_spread_t_4;  /* spread_ucu */
+        /* (ucu-w_3) force part of reciprocal wrench 3 */
+        o[0*count + k] = ucu_w_3_x;
+        o[1*count + k] = ucu_w_3_y;
+        o[2*count + k] = ucu_w_3_z;
+        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+        o[3*count + k] = ucu_H_a_3_x;
+        o[4*count + k] = ucu_H_a_3_y;
+        o[5*count + k] = ucu_H_a_3_z;
+        /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[6*count + k] = ucu_least_pivots;
-        o[8*count + k] = (ucu_axis_z_x + (ucu_axis_z_y + ucu_axis_z_z)) + ((ucu_H_a_3_t +
-            ucu_H_a_3_t_2) + (ucu_H_a_3_t_3 + ucu_least_pivots));
+        o[8*count + k] = (ucu_w_3_x + (ucu_w_3_y + ucu_w_3_z)) + ((ucu_H_a_3_x + ucu_H_a_3_y) +
+            (ucu_H_a_3_z + ucu_least_pivots));
         o[7*count + k] = UNLESS(magnitude(ucu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ucu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ucu_rho2_4) > TOLERANCE*TOLERANCE*1) +
-            UNLESS(magnitude(-ucu_end_p1_r5_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2) >
-            TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_r0_y) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > TOLERANCE*1) + UNLESS(magnitude(ucu_root_2)
+            > TOLERANCE*R(0.8)) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > TOLERANCE*R(0.8));
     }
 }
 
@@ -6179,8 +6379,9 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        const real total_ucu = sums[0*w + k];
-        const real spread_ = spread_t*root(total_ucu);
+        const real spread_ucu = sums[0*w + k];
+        const real spread_ = spread_t*root(spread_ucu);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -97,22 +97,27 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 6 legs of type ucu; copies of the first fill up */
-    hexapod_6ucu_real ucu_J_2_xy[8], ucu_J_2_xz[8], ucu_J_2_yy[8], ucu_J_2_yz[8], ucu_J_2_zz[8],
-            ucu_J_4_xx[8], ucu_J_4_xy[8], ucu_J_4_xz[8], ucu_J_4_yy[8], ucu_J_4_yz[8], ucu_J_4_zz[8],
-            ucu_Jc_2_xx[8], ucu_Sigma_2_xx[8], ucu_Sigma_2_yy[8], ucu_Sigma_2_zz[8],
-            ucu_Sigma_4_xx[8], ucu_Sigma_4_yy[8], ucu_Sigma_4_zz[8], ucu_b_r0_x[8], ucu_b_r0_y[8],
-            ucu_b_r0_z[8], ucu_base_frame_xx[8], ucu_base_frame_xy[8], ucu_base_frame_xz[8],
-            ucu_base_frame_yx[8], ucu_base_frame_yy[8], ucu_base_frame_yz[8], ucu_base_frame_zx[8],
-            ucu_base_frame_zy[8], ucu_base_frame_zz[8], ucu_base_point_x[8], ucu_base_point_y[8],
-            ucu_base_point_z[8], ucu_branch_1[8], ucu_branch_2[8], ucu_branch_4[8], ucu_g_r0_x[8],
-            ucu_g_r0_y[8], ucu_g_r0_z[8], ucu_h_2_x[8], ucu_h_2_y[8], ucu_h_2_z[8], ucu_h_4_x[8],
-            ucu_h_4_y[8], ucu_h_4_z[8], ucu_link2_mass[8], ucu_link4_mass[8],
-            ucu_platform_joint_axis_platform_x[8], ucu_platform_joint_axis_platform_y[8],
-            ucu_platform_joint_axis_platform_z[8], ucu_platform_point_x[8], ucu_platform_point_y[8],
-            ucu_platform_point_z[8];
-    hexapod_6ucu_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
+    hexapod_6ucu_real ucu_J_2_in_spec2_xy[8], ucu_J_2_in_spec2_xz[8], ucu_J_2_in_spec2_yy[8],
+            ucu_J_2_in_spec2_yz[8], ucu_J_2_in_spec2_zz[8], ucu_J_4_in_spec4_xx[8],
+            ucu_J_4_in_spec4_xy[8], ucu_J_4_in_spec4_xz[8], ucu_J_4_in_spec4_yy[8],
+            ucu_J_4_in_spec4_yz[8], ucu_J_4_in_spec4_zz[8], ucu_Jc_2_in_axes2_xx[8],
+            ucu_Sigma_2_in_axes2_xx[8], ucu_Sigma_2_in_axes2_yy[8], ucu_Sigma_2_in_axes2_zz[8],
+            ucu_Sigma_4_in_axes4_xx[8], ucu_Sigma_4_in_axes4_yy[8], ucu_Sigma_4_in_axes4_zz[8],
+            ucu_base_frame_xx[8], ucu_base_frame_xy[8], ucu_base_frame_xz[8], ucu_base_frame_yx[8],
+            ucu_base_frame_yy[8], ucu_base_frame_yz[8], ucu_base_frame_zx[8], ucu_base_frame_zy[8],
+            ucu_base_frame_zz[8], ucu_base_point_x[8], ucu_base_point_y[8], ucu_base_point_z[8],
+            ucu_branch_1[8], ucu_branch_2[8], ucu_branch_4[8], ucu_h_2_in_spec2_x[8],
+            ucu_h_2_in_spec2_y[8], ucu_h_2_in_spec2_z[8], ucu_h_4_in_spec4_x[8],
+            ucu_h_4_in_spec4_y[8], ucu_h_4_in_spec4_z[8], ucu_link2_mass[8], ucu_link4_mass[8],
+            ucu_mu_2_t[8], ucu_mu_2_t_2[8], ucu_mu_2_t_3[8], ucu_platform_joint_axis_platform_x[8],
+            ucu_platform_joint_axis_platform_y[8], ucu_platform_joint_axis_platform_z[8],
+            ucu_platform_point_x[8], ucu_platform_point_y[8], ucu_platform_point_z[8],
+            ucu_potential_t[8], ucu_potential_t_2[8], ucu_potential_t_3[8];
+    hexapod_6ucu_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hexapod_6ucu_model;
 
 extern const hexapod_6ucu_params hexapod_6ucu_default_params;

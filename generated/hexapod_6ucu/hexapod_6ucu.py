@@ -369,7 +369,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -568,46 +568,72 @@ def _prepare(p):
     spread_t = 0.16666666666666666*sqrt(6.0)
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.9595917942265426*spread_t
-    # (ucu-h_4) first moment of link 4 about the connection point
-    ucu_h_4_x = ucu_link4_centre_of_mass_x*ucu_link4_mass
-    ucu_h_4_y = ucu_link4_centre_of_mass_y*ucu_link4_mass
-    ucu_h_4_z = ucu_link4_centre_of_mass_z*ucu_link4_mass
-    # (ucu-J_4) inertia tensor of link 4 about the connection point
-    ucu_J_4_t = ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_x
-    ucu_J_4_t_2 = ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_y
-    ucu_J_4_t_3 = ucu_link4_centre_of_mass_z*ucu_link4_centre_of_mass_z
-    ucu_J_4_t_4 = ucu_J_4_t + ucu_J_4_t_2 + ucu_J_4_t_3
-    ucu_J_4_xx = ucu_link4_inertia_xx - ucu_link4_mass*(ucu_J_4_t - ucu_J_4_t_4)
-    ucu_J_4_xy = (
-    ucu_link4_inertia_xy - ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_y*ucu_link4_mass
-    )
-    ucu_J_4_xz = (
-    ucu_link4_inertia_xz - ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_z*ucu_link4_mass
-    )
-    ucu_J_4_yy = ucu_link4_inertia_yy - ucu_link4_mass*(ucu_J_4_t_2 - ucu_J_4_t_4)
-    ucu_J_4_yz = (
-    ucu_link4_inertia_yz - ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_z*ucu_link4_mass
-    )
-    ucu_J_4_zz = ucu_link4_inertia_zz - ucu_link4_mass*(ucu_J_4_t_3 - ucu_J_4_t_4)
+    # (ucu-h_2) first moment of link 2 about the origin of link 2
+    ucu_h_2_in_spec2_x = ucu_link2_centre_of_mass_x*ucu_link2_mass
+    ucu_h_2_in_spec2_y = ucu_link2_centre_of_mass_y*ucu_link2_mass
+    ucu_h_2_in_spec2_z = ucu_link2_centre_of_mass_z*ucu_link2_mass
     # (ucu-J_2) inertia tensor of link 2 about the origin of link 2
     ucu_J_2_t = ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_x
     ucu_J_2_t_2 = ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_y
     ucu_J_2_t_3 = ucu_link2_centre_of_mass_z*ucu_link2_centre_of_mass_z
     ucu_J_2_t_4 = ucu_J_2_t + ucu_J_2_t_2 + ucu_J_2_t_3
-    ucu_J_2_xx = ucu_link2_inertia_xx - ucu_link2_mass*(ucu_J_2_t - ucu_J_2_t_4)
-    ucu_J_2_xy = (
+    ucu_J_2_in_spec2_xx = ucu_link2_inertia_xx - ucu_link2_mass*(ucu_J_2_t - ucu_J_2_t_4)
+    ucu_J_2_in_spec2_xy = (
     ucu_link2_inertia_xy - ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_y*ucu_link2_mass
     )
-    ucu_J_2_xz = (
+    ucu_J_2_in_spec2_xz = (
     ucu_link2_inertia_xz - ucu_link2_centre_of_mass_x*ucu_link2_centre_of_mass_z*ucu_link2_mass
     )
-    ucu_J_2_yy = ucu_link2_inertia_yy - ucu_link2_mass*(ucu_J_2_t_2 - ucu_J_2_t_4)
-    ucu_J_2_yz = (
+    ucu_J_2_in_spec2_yy = ucu_link2_inertia_yy - ucu_link2_mass*(ucu_J_2_t_2 - ucu_J_2_t_4)
+    ucu_J_2_in_spec2_yz = (
     ucu_link2_inertia_yz - ucu_link2_centre_of_mass_y*ucu_link2_centre_of_mass_z*ucu_link2_mass
     )
-    ucu_J_2_zz = ucu_link2_inertia_zz - ucu_link2_mass*(ucu_J_2_t_3 - ucu_J_2_t_4)
+    ucu_J_2_in_spec2_zz = ucu_link2_inertia_zz - ucu_link2_mass*(ucu_J_2_t_3 - ucu_J_2_t_4)
+    # (ucu-h_4) first moment of link 4 about the connection point
+    ucu_h_4_in_spec4_x = ucu_link4_centre_of_mass_x*ucu_link4_mass
+    ucu_h_4_in_spec4_y = ucu_link4_centre_of_mass_y*ucu_link4_mass
+    ucu_h_4_in_spec4_z = ucu_link4_centre_of_mass_z*ucu_link4_mass
+    # (ucu-J_4) inertia tensor of link 4 about the connection point
+    ucu_J_4_t = ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_x
+    ucu_J_4_t_2 = ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_y
+    ucu_J_4_t_3 = ucu_link4_centre_of_mass_z*ucu_link4_centre_of_mass_z
+    ucu_J_4_t_4 = ucu_J_4_t + ucu_J_4_t_2 + ucu_J_4_t_3
+    ucu_J_4_in_spec4_xx = ucu_link4_inertia_xx - ucu_link4_mass*(ucu_J_4_t - ucu_J_4_t_4)
+    ucu_J_4_in_spec4_xy = (
+    ucu_link4_inertia_xy - ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_y*ucu_link4_mass
+    )
+    ucu_J_4_in_spec4_xz = (
+    ucu_link4_inertia_xz - ucu_link4_centre_of_mass_x*ucu_link4_centre_of_mass_z*ucu_link4_mass
+    )
+    ucu_J_4_in_spec4_yy = ucu_link4_inertia_yy - ucu_link4_mass*(ucu_J_4_t_2 - ucu_J_4_t_4)
+    ucu_J_4_in_spec4_yz = (
+    ucu_link4_inertia_yz - ucu_link4_centre_of_mass_y*ucu_link4_centre_of_mass_z*ucu_link4_mass
+    )
+    ucu_J_4_in_spec4_zz = ucu_link4_inertia_zz - ucu_link4_mass*(ucu_J_4_t_3 - ucu_J_4_t_4)
     # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-    ucu_Jc_2_xx = ucu_J_2_xx + ucu_J_4_xx
+    ucu_Jc_2_in_axes2_xx = ucu_J_2_in_spec2_xx + ucu_J_4_in_spec4_xx
+    # (ucu-trace_J_4) half the trace of that inertia tensor
+    ucu_trace_J_4 = 0.5*ucu_J_4_in_spec4_xx + 0.5*ucu_J_4_in_spec4_yy + 0.5*ucu_J_4_in_spec4_zz
+    # (ucu-Sigma_4) second moment of mass of the links that turn with link 4
+    ucu_Sigma_4_in_axes4_xx = ucu_trace_J_4 - ucu_J_4_in_spec4_yy
+    ucu_Sigma_4_in_axes4_yy = ucu_trace_J_4 - ucu_J_4_in_spec4_zz
+    ucu_Sigma_4_in_axes4_zz = ucu_trace_J_4 - ucu_J_4_in_spec4_xx
+    # (ucu-trace_J_2) half the trace of that inertia tensor
+    ucu_trace_J_2 = 0.5*ucu_J_2_in_spec2_xx + 0.5*ucu_J_2_in_spec2_yy + 0.5*ucu_J_2_in_spec2_zz
+    # (ucu-Sigma_2) second moment of mass of the links that turn with link 2
+    ucu_Sigma_2_in_axes2_xx = ucu_trace_J_2 - ucu_J_2_in_spec2_xx
+    ucu_Sigma_2_in_axes2_yy = ucu_trace_J_2 - ucu_J_2_in_spec2_zz
+    ucu_Sigma_2_in_axes2_zz = ucu_trace_J_2 - ucu_J_2_in_spec2_yy
+    # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
+    ucu_mu_2_t = (
+    gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx + gravity_z*ucu_base_frame_zx
+    )
+    ucu_mu_2_t_2 = (
+    gravity_x*ucu_base_frame_xy + gravity_y*ucu_base_frame_yy + gravity_z*ucu_base_frame_zy
+    )
+    ucu_mu_2_t_3 = (
+    gravity_x*ucu_base_frame_xz + gravity_y*ucu_base_frame_yz + gravity_z*ucu_base_frame_zz
+    )
     # (h_star) first moment about the platform origin
     ucu_h_star_t = ucu_link4_mass*ucu_platform_point_x
     ucu_h_star_t_2 = ucu_link4_mass*ucu_platform_point_y
@@ -623,136 +649,123 @@ def _prepare(p):
     ucu_J_star_t_8 = ucu_link4_mass*(ucu_J_star_t_2 - ucu_J_star_t_4)
     ucu_J_star_t_9 = ucu_link4_mass*ucu_platform_point_y*ucu_platform_point_z
     ucu_J_star_t_10 = ucu_link4_mass*(ucu_J_star_t_3 - ucu_J_star_t_4)
-    # (ucu-trace_J_4) half the trace of that inertia tensor
-    ucu_trace_J_4 = 0.5*ucu_J_4_xx + 0.5*ucu_J_4_yy + 0.5*ucu_J_4_zz
-    # (ucu-Sigma_4) second moment of mass of the links that turn with link 4
-    ucu_Sigma_4_xx = ucu_trace_J_4 - ucu_J_4_yy
-    ucu_Sigma_4_yy = ucu_trace_J_4 - ucu_J_4_zz
-    ucu_Sigma_4_zz = ucu_trace_J_4 - ucu_J_4_xx
-    # (ucu-h_2) first moment of link 2 about the origin of link 2
-    ucu_h_2_x = ucu_link2_centre_of_mass_x*ucu_link2_mass
-    ucu_h_2_y = ucu_link2_centre_of_mass_y*ucu_link2_mass
-    ucu_h_2_z = ucu_link2_centre_of_mass_z*ucu_link2_mass
-    # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    ucu_g_r0_x = (
-    gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx + gravity_z*ucu_base_frame_zx
-    )
-    ucu_g_r0_y = (
-    gravity_x*ucu_base_frame_xy + gravity_y*ucu_base_frame_yy + gravity_z*ucu_base_frame_zy
-    )
-    ucu_g_r0_z = (
-    gravity_x*ucu_base_frame_xz + gravity_y*ucu_base_frame_yz + gravity_z*ucu_base_frame_zz
-    )
-    # (ucu-trace_J_2) half the trace of that inertia tensor
-    ucu_trace_J_2 = 0.5*ucu_J_2_xx + 0.5*ucu_J_2_yy + 0.5*ucu_J_2_zz
-    # (ucu-Sigma_2) second moment of mass of the links that turn with link 2
-    ucu_Sigma_2_xx = ucu_trace_J_2 - ucu_J_2_xx
-    ucu_Sigma_2_yy = ucu_trace_J_2 - ucu_J_2_zz
-    ucu_Sigma_2_zz = ucu_trace_J_2 - ucu_J_2_yy
     # (potential) potential energy
-    ucu_b_r0_x = (
+    ucu_potential_t = (
     ucu_base_frame_xx*ucu_base_point_x + ucu_base_frame_yx*ucu_base_point_y +
         ucu_base_frame_zx*ucu_base_point_z
     )
-    ucu_b_r0_y = (
+    ucu_potential_t_2 = (
     ucu_base_frame_xy*ucu_base_point_x + ucu_base_frame_yy*ucu_base_point_y +
         ucu_base_frame_zy*ucu_base_point_z
     )
-    ucu_b_r0_z = (
+    ucu_potential_t_3 = (
     ucu_base_frame_xz*ucu_base_point_x + ucu_base_frame_yz*ucu_base_point_y +
         ucu_base_frame_zz*ucu_base_point_z
     )
-    total_ucu = np.sum(np.broadcast_to(ucu_link4_mass, _ucu))
-    total_ucu_x = np.sum(np.broadcast_to(ucu_h_star_t, _ucu))
-    total_ucu_y = np.sum(np.broadcast_to(ucu_h_star_t_2, _ucu))
-    total_ucu_z = np.sum(np.broadcast_to(ucu_h_star_t_3, _ucu))
-    total_ucu_xx = np.sum(np.broadcast_to(ucu_J_star_t_5, _ucu))
-    total_ucu_xy = np.sum(np.broadcast_to(ucu_J_star_t_6, _ucu))
-    total_ucu_xz = np.sum(np.broadcast_to(ucu_J_star_t_7, _ucu))
-    total_ucu_yy = np.sum(np.broadcast_to(ucu_J_star_t_8, _ucu))
-    total_ucu_yz = np.sum(np.broadcast_to(ucu_J_star_t_9, _ucu))
-    total_ucu_zz = np.sum(np.broadcast_to(ucu_J_star_t_10, _ucu))
-    total_ucu_x_2 = np.sum(np.broadcast_to(ucu_platform_point_x, _ucu))
-    total_ucu_y_2 = np.sum(np.broadcast_to(ucu_platform_point_y, _ucu))
-    total_ucu_z_2 = np.sum(np.broadcast_to(ucu_platform_point_z, _ucu))
+    m_star_ucu = np.sum(np.broadcast_to(ucu_link4_mass, _ucu))
+    h_star_ucu_in_platform_x = np.sum(np.broadcast_to(ucu_h_star_t, _ucu))
+    h_star_ucu_in_platform_y = np.sum(np.broadcast_to(ucu_h_star_t_2, _ucu))
+    h_star_ucu_in_platform_z = np.sum(np.broadcast_to(ucu_h_star_t_3, _ucu))
+    J_star_ucu_in_platform_xx = np.sum(np.broadcast_to(-ucu_J_star_t_5, _ucu))
+    J_star_ucu_in_platform_xy = np.sum(np.broadcast_to(-ucu_J_star_t_6, _ucu))
+    J_star_ucu_in_platform_xz = np.sum(np.broadcast_to(-ucu_J_star_t_7, _ucu))
+    J_star_ucu_in_platform_yy = np.sum(np.broadcast_to(-ucu_J_star_t_8, _ucu))
+    J_star_ucu_in_platform_yz = np.sum(np.broadcast_to(-ucu_J_star_t_9, _ucu))
+    J_star_ucu_in_platform_zz = np.sum(np.broadcast_to(-ucu_J_star_t_10, _ucu))
+    b_c_ucu_in_platform_x = np.sum(np.broadcast_to(ucu_platform_point_x, _ucu))
+    b_c_ucu_in_platform_y = np.sum(np.broadcast_to(ucu_platform_point_y, _ucu))
+    b_c_ucu_in_platform_z = np.sum(np.broadcast_to(ucu_platform_point_z, _ucu))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_ucu
+    m_star = m_star_ucu + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_ucu_x
-    h_star_y = h_star_t_2 + total_ucu_y
-    h_star_z = h_star_t_3 + total_ucu_z
+    h_star_in_platform_x = h_star_t + h_star_ucu_in_platform_x
+    h_star_in_platform_y = h_star_t_2 + h_star_ucu_in_platform_y
+    h_star_in_platform_z = h_star_t_3 + h_star_ucu_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_ucu_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_ucu_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_ucu_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_ucu_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_ucu_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_ucu_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_ucu_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_ucu_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_ucu_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_ucu_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_ucu_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_ucu_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_ucu_x_2
-    b_c_y = 0.16666666666666666*total_ucu_y_2
-    b_c_z = 0.16666666666666666*total_ucu_z_2
+    b_c_in_platform_x = 0.16666666666666666*b_c_ucu_in_platform_x
+    b_c_in_platform_y = 0.16666666666666666*b_c_ucu_in_platform_y
+    b_c_in_platform_z = 0.16666666666666666*b_c_ucu_in_platform_z
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ucu,
-        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yy, ucu_J_2_yz, ucu_J_2_zz, ucu_J_4_xx, ucu_J_4_xy,
-                    ucu_J_4_xz, ucu_J_4_yy, ucu_J_4_yz, ucu_J_4_zz, ucu_Jc_2_xx, ucu_Sigma_2_xx,
-                    ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy,
-                    ucu_Sigma_4_zz, ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz,
-                    ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx,
-                    ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y,
-                    ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_g_r0_x,
-                    ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x, ucu_h_4_y,
-                    ucu_h_4_z, ucu_platform_joint_axis_platform_x,
-                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
-                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
-                ),
-            ),
-        ),
-        "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
-            (
-                (_ucu,
-        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yy, ucu_J_2_yz, ucu_J_2_zz, ucu_J_4_xx, ucu_J_4_xy,
-                    ucu_J_4_xz, ucu_J_4_yy, ucu_J_4_yz, ucu_J_4_zz, ucu_Jc_2_xx,
-                    ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
-                    ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
-                    ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z,
-                    ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z,
+        (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yy, ucu_J_2_in_spec2_yz,
+                    ucu_J_2_in_spec2_zz, ucu_J_4_in_spec4_xx, ucu_J_4_in_spec4_xy,
+                    ucu_J_4_in_spec4_xz, ucu_J_4_in_spec4_yy, ucu_J_4_in_spec4_yz,
+                    ucu_J_4_in_spec4_zz, ucu_Jc_2_in_axes2_xx, ucu_Sigma_2_in_axes2_xx,
+                    ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_in_axes2_zz, ucu_Sigma_4_in_axes4_xx,
+                    ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_in_axes4_zz, ucu_base_frame_xx,
+                    ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+                    ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+                    ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+                    ucu_branch_2, ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y,
+                    ucu_h_2_in_spec2_z, ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y,
+                    ucu_h_4_in_spec4_z, ucu_mu_2_t, ucu_mu_2_t_2, ucu_mu_2_t_3,
                     ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
                     ucu_platform_joint_axis_platform_z, ucu_platform_point_x,
                     ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
-        "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        "M": (
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ucu,
-        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
-                    ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy,
-                    ucu_Sigma_4_zz, ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz,
-                    ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx,
-                    ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y,
-                    ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_g_r0_x,
-                    ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x, ucu_h_4_y,
-                    ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+        (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yy, ucu_J_2_in_spec2_yz,
+                    ucu_J_2_in_spec2_zz, ucu_J_4_in_spec4_xx, ucu_J_4_in_spec4_xy,
+                    ucu_J_4_in_spec4_xz, ucu_J_4_in_spec4_yy, ucu_J_4_in_spec4_yz,
+                    ucu_J_4_in_spec4_zz, ucu_Jc_2_in_axes2_xx, ucu_base_frame_xx,
+                    ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+                    ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+                    ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+                    ucu_branch_2, ucu_branch_4, ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y,
+                    ucu_h_4_in_spec4_z, ucu_platform_joint_axis_platform_x,
                     ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
                     ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
+                ),
+            ),
+        ),
+        "Z": (
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
+            (
+                (_ucu,
+        (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
+                    ucu_J_4_in_spec4_xz, ucu_J_4_in_spec4_yz, ucu_Sigma_2_in_axes2_xx,
+                    ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_in_axes2_zz, ucu_Sigma_4_in_axes4_xx,
+                    ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_in_axes4_zz, ucu_base_frame_xx,
+                    ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+                    ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+                    ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+                    ucu_branch_2, ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y,
+                    ucu_h_2_in_spec2_z, ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y,
+                    ucu_h_4_in_spec4_z, ucu_mu_2_t, ucu_mu_2_t_2, ucu_mu_2_t_3,
+                    ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
+                    ucu_platform_joint_axis_platform_z, ucu_platform_point_x,
+                    ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
@@ -769,20 +782,25 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_ucu,
-        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
-                    ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy,
-                    ucu_Sigma_4_zz, ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz,
-                    ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx,
-                    ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y,
-                    ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_g_r0_x,
-                    ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x, ucu_h_4_y,
-                    ucu_h_4_z, ucu_platform_joint_axis_platform_x,
-                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
-                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
+        (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
+                    ucu_J_4_in_spec4_xz, ucu_J_4_in_spec4_yz, ucu_Sigma_2_in_axes2_xx,
+                    ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_in_axes2_zz, ucu_Sigma_4_in_axes4_xx,
+                    ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_in_axes4_zz, ucu_base_frame_xx,
+                    ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+                    ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+                    ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+                    ucu_branch_2, ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y,
+                    ucu_h_2_in_spec2_z, ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y,
+                    ucu_h_4_in_spec4_z, ucu_mu_2_t, ucu_mu_2_t_2, ucu_mu_2_t_3,
+                    ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
+                    ucu_platform_joint_axis_platform_z, ucu_platform_point_x,
+                    ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
@@ -829,37 +847,42 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_ucu,
-        (ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
-                    ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy,
-                    ucu_Sigma_4_zz, ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz,
-                    ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx,
-                    ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y,
-                    ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_g_r0_x,
-                    ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x, ucu_h_4_y,
-                    ucu_h_4_z, ucu_link4_mass, ucu_platform_joint_axis_platform_x,
-                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
-                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,),
-                ),
-            ),
-        ),
-        "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
-            (
-                (_ucu,
-        (ucu_b_r0_x, ucu_b_r0_y, ucu_b_r0_z, ucu_base_frame_xx, ucu_base_frame_xy,
-                    ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz,
-                    ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x,
-                    ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4,
-                    ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z,
-                    ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_link2_mass,
+        (ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
+                    ucu_J_4_in_spec4_xz, ucu_J_4_in_spec4_yz, ucu_Sigma_2_in_axes2_xx,
+                    ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_in_axes2_zz, ucu_Sigma_4_in_axes4_xx,
+                    ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_in_axes4_zz, ucu_base_frame_xx,
+                    ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+                    ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+                    ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+                    ucu_branch_2, ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y,
+                    ucu_h_2_in_spec2_z, ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y,
+                    ucu_h_4_in_spec4_z, ucu_link4_mass, ucu_mu_2_t, ucu_mu_2_t_2, ucu_mu_2_t_3,
                     ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
                     ucu_platform_joint_axis_platform_z, ucu_platform_point_x,
                     ucu_platform_point_y, ucu_platform_point_z,),
                 ),
             ),
         ),
+        "potential": (
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
+            (
+                (_ucu,
+        (ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+                    ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+                    ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z,
+                    ucu_branch_1, ucu_branch_2, ucu_branch_4, ucu_h_2_in_spec2_x,
+                    ucu_h_2_in_spec2_y, ucu_h_2_in_spec2_z, ucu_h_4_in_spec4_x,
+                    ucu_h_4_in_spec4_y, ucu_h_4_in_spec4_z, ucu_link2_mass, ucu_mu_2_t,
+                    ucu_mu_2_t_2, ucu_mu_2_t_3, ucu_platform_joint_axis_platform_x,
+                    ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+                    ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
+                    ucu_potential_t, ucu_potential_t_2, ucu_potential_t_3,),
+                ),
+            ),
+        ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_ucu,
         (ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
@@ -1362,9 +1385,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1419,787 +1443,889 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yy, ucu_J_2_yz, ucu_J_2_zz, ucu_J_4_xx, ucu_J_4_xy,
-            ucu_J_4_xz, ucu_J_4_yy, ucu_J_4_yz, ucu_J_4_zz, ucu_Jc_2_xx, ucu_Sigma_2_xx,
-            ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy, ucu_Sigma_4_zz,
+        ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yy, ucu_J_2_in_spec2_yz,
+            ucu_J_2_in_spec2_zz, ucu_J_4_in_spec4_xx, ucu_J_4_in_spec4_xy, ucu_J_4_in_spec4_xz,
+            ucu_J_4_in_spec4_yy, ucu_J_4_in_spec4_yz, ucu_J_4_in_spec4_zz, ucu_Jc_2_in_axes2_xx,
+            ucu_Sigma_2_in_axes2_xx, ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_in_axes2_zz,
+            ucu_Sigma_4_in_axes4_xx, ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_in_axes4_zz,
             ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
             ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
             ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
-            ucu_branch_2, ucu_branch_4, ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y,
-            ucu_h_2_z, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+            ucu_branch_2, ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y,
+            ucu_h_2_in_spec2_z, ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y, ucu_h_4_in_spec4_z,
+            ucu_mu_2_t, ucu_mu_2_t_2, ucu_mu_2_t_3, ucu_platform_joint_axis_platform_x,
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
-        # (ucu-px_1) component along the reference direction
-        ucu_px_1 = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        # (ucu-py_1) component across the reference direction
-        ucu_py_1 = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        # (ucu-rho2_1) squared amplitude
-        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
-        # (ucu-root_1) amplitude, with the sign of the branch
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
-        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_7 = ucu_branch_1*sqrt(ucu_h_4_t_6)
+        ucu_h_4_t_8 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
-        # (ucu-root_2) amplitude, with the sign of the branch
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_h_4_t_9 = ucu_h_4_t_6 + ucu_h_4_t_8*ucu_h_4_t_8
+        ucu_h_4_t_10 = ucu_branch_2*sqrt(ucu_h_4_t_9)
+        inv_ucu_h_4_t_10 = 1.0/ucu_h_4_t_10
+        ucu_h_4_t_11 = -inv_ucu_h_4_t_10*ucu_h_4_t_7
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_8
+        ucu_h_4_t_12 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_h_4_t_13 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
-        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
-        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
-        # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
-        # (ucu-root_4) amplitude, with the sign of the branch
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
-        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_c_2*ucu_c_4
-        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
-        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
-        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
-        ucu_w_1_t = ucu_s_2*ucu_s_4
-        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
-        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
-        axis_y_ucu_axes4_in_base_x = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
-            ucu_base_frame_xz*ucu_v_1_t_2
+        inv_ucu_h_4_t_7 = 1.0/ucu_h_4_t_7
+        ucu_h_4_t_15 = -inv_ucu_h_4_t_7*ucu_h_4_t_5
+        ucu_h_4_t_16 = inv_ucu_h_4_t_7*ucu_h_4_t_4
+        ucu_end_p1_in_turn4_y = ucu_h_4_t_12*ucu_h_4_t_15 + ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_17 = ucu_h_4_t_12*ucu_h_4_t_16 - ucu_h_4_t_13*ucu_h_4_t_15
+        ucu_end_p1_in_turn4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_17 + ucu_h_4_t_11*ucu_h_4_t_14
+        ucu_h_4_t_18 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_end_p1_in_turn4_y*ucu_end_p1_in_turn4_y
         )
-        axis_y_ucu_axes4_in_base_y = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
-            ucu_base_frame_yz*ucu_v_1_t_2
+        ucu_h_4_t_19 = ucu_branch_4*sqrt(ucu_h_4_t_18)
+        inv_ucu_h_4_t_19 = 1.0/ucu_h_4_t_19
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_y
+        ucu_h_4_in_axes2_y = (
+        ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y - ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z
         )
-        axis_y_ucu_axes4_in_base_z = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
-            ucu_base_frame_zz*ucu_v_1_t_2
-        )
-        axis_x_ucu_axes4_x = (
-        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
-        )
-        axis_x_ucu_axes4_y = (
-        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
-        )
-        axis_x_ucu_axes4_z = (
-        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
-        )
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
-        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
-        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
-        # (ucu-w_1) force part of reciprocal wrench 1
-        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
-        ucu_w_1_t_3 = inv_ucu_v_1_r0_y*ucu_s_4
-        ucu_w_1_t_4 = inv_ucu_v_1_r0_y*ucu_c_4
-        # (ucu-w_2) force part of reciprocal wrench 2
-        ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_r0_y*ucu_v_1_r0_x
-        ucu__r1_x = inv_ucu_root_2*ucu_c_4 - ucu_s_4*ucu_w_2_t
-        ucu__r1_y = -inv_ucu_root_2*ucu_s_4 - ucu_c_4*ucu_w_2_t
-        # (ucu-w_4) force part of reciprocal wrench 4
-        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
-        ucu_w_4_t = inv_ucu_end_p1_r5_x*inv_ucu_root_2*ucu_n_m1_t
-        ucu_w_4_t_2 = inv_ucu_v_1_r0_y*(inv_ucu_end_p1_r5_x*ucu_w_1_t_2 + ucu_v_1_r0_x*ucu_w_4_t)
-        ucu__r1_x_2 = ucu_c_4*ucu_w_4_t - ucu_s_4*ucu_w_4_t_2
-        ucu__r1_y_2 = -ucu_c_4*ucu_w_4_t_2 - ucu_s_4*ucu_w_4_t
-        # (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
-        ucu_d_alpha_4_zy = ucu__r1_y_2 + ucu_s_2*ucu_w_1_t_4
-        # (ucu-L_c_4) moment about joint 4 that accelerates joint 4, per unit
-        ucu_L_c_4_r0_y = ucu_J_4_xy*ucu_s_4 + ucu_J_4_xz*ucu_c_4
-        # (ucu-D_1_4) inertia of joint 4 along joint 1
-        ucu_D_1_4 = ucu_J_4_xx*ucu_s_2 + ucu_J_4_xz*ucu_v_1_t_2 - ucu_J_4_xy*ucu_v_1_t
-        # (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        ucu_d_Gamma_4_t = inv_ucu_end_p1_r5_x*ucu_J_4_xx
-        ucu_d_Gamma_4_t_2 = inv_ucu_root_2*(ucu_L_c_4_r0_y + ucu_d_Gamma_4_t*ucu_n_m1_t)
-        ucu_d_Gamma_4_t_3 = (
-        inv_ucu_v_1_r0_y*(ucu_d_Gamma_4_t*ucu_w_1_t_2 + ucu_d_Gamma_4_t_2*ucu_v_1_r0_x -
-            ucu_D_1_4)
-        )
-        ucu_d_Gamma_4_x = ucu_c_4*ucu_d_Gamma_4_t_2 - ucu_h_4_z - ucu_d_Gamma_4_t_3*ucu_s_4
-        ucu_d_Gamma_4_y = ucu_h_4_y - ucu_c_4*ucu_d_Gamma_4_t_3 - ucu_d_Gamma_4_t_2*ucu_s_4
         # (ucu-J_4) inertia tensor of link 4 about the connection point
-        ucu_J_4_t = ucu_J_4_yz*ucu_s_4
-        ucu__x = ucu_J_4_yy*ucu_c_4 - ucu_J_4_t
-        ucu_J_4_t_2 = ucu_J_4_yz*ucu_c_4
-        ucu__x_2 = ucu_J_4_t_2 - ucu_J_4_zz*ucu_s_4
-        # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        ucu_Jc_2_xy = ucu_J_4_xy*ucu_c_4 - ucu_J_2_xz - ucu_J_4_xz*ucu_s_4
-        # (ucu-L_c_2) moment about joint 2 that accelerates joint 2, per unit
-        ucu_L_c_2_r0_y = (
-        ucu_s_2*(ucu_J_2_xy + ucu_L_c_4_r0_y) - ucu_c_2*(ucu__x*ucu_s_4 + ucu__x_2*ucu_c_4 -
-            ucu_J_2_yz)
-        )
-        # (ucu-h_4) first moment of link 4 about the connection point
-        ucu_h_4_r1_x = ucu_c_4*ucu_h_4_y - ucu_h_4_z*ucu_s_4
-        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        ucu_d_Gamma_2_t = inv_ucu_end_p1_r5_x*ucu_L_c_4_r0_y
-        ucu_d_Gamma_2_t_2 = (
-        inv_ucu_root_2*(ucu_J_2_yy + ucu_c_4*(ucu_J_4_t + ucu_J_4_zz*ucu_c_4) +
-            ucu_d_Gamma_2_t*ucu_n_m1_t + ucu_s_4*(ucu_J_4_t_2 + ucu_J_4_yy*ucu_s_4))
-        )
-        ucu_d_Gamma_2_t_3 = (
-        inv_ucu_v_1_r0_y*(ucu_d_Gamma_2_t*ucu_w_1_t_2 + ucu_d_Gamma_2_t_2*ucu_v_1_r0_x -
-            ucu_L_c_2_r0_y)
-        )
-        ucu_d_Gamma_2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_x
-        # (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        ucu_d_Gamma_1_t = inv_ucu_end_p1_r5_x*ucu_D_1_4
-        ucu_d_Gamma_1_t_2 = inv_ucu_root_2*(ucu_L_c_2_r0_y + ucu_d_Gamma_1_t*ucu_n_m1_t)
-        ucu_d_Gamma_1_t_3 = (
-        ucu_c_2*(ucu_Jc_2_xy*ucu_s_2 - ucu_c_2*(ucu_J_2_zz + ucu__x*ucu_c_4 - ucu__x_2*ucu_s_4)) +
-            ucu_d_Gamma_1_t*ucu_w_1_t_2 + ucu_d_Gamma_1_t_2*ucu_v_1_r0_x -
-            ucu_s_2*(ucu_Jc_2_xx*ucu_s_2 - ucu_Jc_2_xy*ucu_c_2)
-        )
-        ucu_d_Gamma_1_t_4 = ucu_c_2*ucu_d_Gamma_1_t_2
-        ucu_d_Gamma_1_x = (
-        ucu_c_2*ucu_h_4_x + ucu_h_4_r1_x*ucu_s_2 - inv_ucu_v_1_r0_y*ucu_d_Gamma_1_t_3
-        )
-        ucu_d_Gamma_1_y = ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 - ucu_d_Gamma_1_t_2*ucu_s_2
-        ucu_d_Gamma_1_r1_x = -ucu_c_2*ucu_d_Gamma_1_y - ucu_d_Gamma_1_t_4*ucu_s_2
-        ucu_d_Gamma_1_r1_y = ucu_c_2*ucu_d_Gamma_1_t_4 - ucu_d_Gamma_1_y*ucu_s_2
-        ucu_d_Gamma_1_r3_y = ucu_c_4*ucu_d_Gamma_1_x - ucu_d_Gamma_1_r1_y*ucu_s_4
-        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        ucu_d_Gamma_2_r1_y = -ucu_c_4*ucu_d_Gamma_2_t_3 - ucu_d_Gamma_2_y*ucu_s_4
-        # (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_d_G_xz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_3 - ucu__r1_x*ucu_h_4_r1_x
-        ucu_d_G_yz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_4 - ucu__r1_y*ucu_h_4_r1_x
-        # (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ucu_d_c_xx = (
-        ucu_h_4_z*(ucu__r1_x_2 + ucu_s_2*ucu_w_1_t_3) - ucu__r1_x*(ucu_c_4*ucu_d_Gamma_2_y -
-            ucu_d_Gamma_2_t_3*ucu_s_4) - ucu__r1_x_2*ucu_d_Gamma_4_x -
-            ucu_h_4_x*(ucu__r1_x*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_3) -
-            ucu_w_1_t_3*(ucu_c_4*ucu_d_Gamma_1_r1_y + ucu_d_Gamma_1_x*ucu_s_4)
-        )
-        ucu_d_c_xy = (
-        ucu_d_alpha_4_zy*ucu_h_4_z - ucu__r1_x*ucu_d_Gamma_2_r1_y - ucu__r1_x_2*ucu_d_Gamma_4_y -
-            ucu_d_Gamma_1_r3_y*ucu_w_1_t_3 - ucu_h_4_x*(ucu__r1_y*ucu_c_4 +
-            ucu_v_1_t_2*ucu_w_1_t_4)
-        )
-        ucu_d_c_yy = (
-        ucu_h_4_x*(ucu__r1_y*ucu_s_4 - ucu_v_1_t*ucu_w_1_t_4) - ucu__r1_y*ucu_d_Gamma_2_r1_y -
-            ucu__r1_y_2*ucu_d_Gamma_4_y - ucu_d_Gamma_1_r3_y*ucu_w_1_t_4 -
-            ucu_d_alpha_4_zy*ucu_h_4_y
-        )
-        # (ucu-Q) inertia of the leg at the connection point, without the mass gathered there
-        ucu_Q_t = 0.5*ucu_d_c_xx
-        ucu_Q_t_2 = 0.5*ucu_d_c_yy
-        ucu_Q_t_3 = (
-        axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_in_base_x*ucu_d_c_xy -
-            ucu_axis_z_x*ucu_d_G_xz
-        )
-        ucu_Q_t_4 = (
-        axis_x_ucu_axes4_y*ucu_Q_t + axis_y_ucu_axes4_in_base_y*ucu_d_c_xy -
-            ucu_axis_z_y*ucu_d_G_xz
-        )
-        ucu_Q_t_5 = (
-        axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_in_base_z*ucu_d_c_xy -
-            ucu_axis_z_z*ucu_d_G_xz
-        )
-        ucu_Q_t_6 = axis_y_ucu_axes4_in_base_x*ucu_Q_t_2 - ucu_axis_z_x*ucu_d_G_yz
-        ucu_Q_t_7 = axis_y_ucu_axes4_in_base_y*ucu_Q_t_2 - ucu_axis_z_y*ucu_d_G_yz
-        ucu_Q_t_8 = axis_y_ucu_axes4_in_base_z*ucu_Q_t_2 - ucu_axis_z_z*ucu_d_G_yz
-        ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 + axis_y_ucu_axes4_in_base_x*ucu_Q_t_6
-        ucu_Q_t_10 = 2.0*ucu_Q_t_9
-        ucu_Q_t_11 = (
-        axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_x_ucu_axes4_y*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_7 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_6
-        )
-        ucu_Q_t_12 = (
-        axis_x_ucu_axes4_x*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_6
-        )
-        ucu_Q_t_13 = axis_x_ucu_axes4_y*ucu_Q_t_4 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_7
-        ucu_Q_t_14 = 2.0*ucu_Q_t_13
-        ucu_Q_t_15 = (
-        axis_x_ucu_axes4_y*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_4 +
-            axis_y_ucu_axes4_in_base_y*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_7
-        )
-        ucu_Q_t_16 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_8
-        ucu_Q_t_17 = 2.0*ucu_Q_t_16
-        # (ucu-o_4) moment part of reciprocal wrench 4
-        ucu_o_4_x = inv_ucu_end_p1_r5_x*ucu_end_p1_r3_x
-        # (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        ucu_dalpha_Gamma_4_t = ucu_J_4_xx*ucu_o_4_x
-        # (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        ucu_dalpha_Gamma_2_t = ucu_L_c_4_r0_y*ucu_o_4_x
-        # (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_x
-        # (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ucu_dalpha_c_xx = (
-        ucu__r1_x*ucu_dalpha_Gamma_2_t + ucu__r1_x_2*ucu_dalpha_Gamma_4_t +
-            ucu_dalpha_Gamma_1_t*ucu_w_1_t_3 - ucu_h_4_z*ucu_o_4_x
-        )
-        ucu_dalpha_c_xz = (
-        ucu_h_4_z - ucu_D_1_4*ucu_w_1_t_3 - ucu_J_4_xx*ucu__r1_x_2 - ucu_L_c_4_r0_y*ucu__r1_x
-        )
-        ucu_dalpha_c_yx = (
-        ucu__r1_y*ucu_dalpha_Gamma_2_t + ucu__r1_y_2*ucu_dalpha_Gamma_4_t +
-            ucu_dalpha_Gamma_1_t*ucu_w_1_t_4 + ucu_h_4_y*ucu_o_4_x
-        )
-        ucu_dalpha_c_yz = (
-        -ucu_h_4_y - ucu_D_1_4*ucu_w_1_t_4 - ucu_J_4_xx*ucu__r1_y_2 - ucu_L_c_4_r0_y*ucu__r1_y
-        )
-        ucu_dalpha_c_in_base_x = (
-        axis_x_ucu_axes4_x*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yx
-        )
-        ucu_dalpha_c_in_base_y = (
-        axis_x_ucu_axes4_y*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yx
-        )
-        ucu_dalpha_c_in_base_z = (
-        axis_x_ucu_axes4_z*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yx
-        )
-        ucu_dalpha_c_in_base_x_2 = (
-        axis_x_ucu_axes4_x*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yz
-        )
-        ucu_dalpha_c_in_base_y_2 = (
-        axis_x_ucu_axes4_y*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yz
-        )
-        ucu_dalpha_c_in_base_z_2 = (
-        axis_x_ucu_axes4_z*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yz
-        )
-        # (M_ta) coupling block of M
-        ucu_M_ta_t = ucu_Q_t_11*ucu_q_in_base_z
-        ucu_M_ta_t_2 = ucu_Q_t_12*ucu_q_in_base_y
-        ucu_M_ta_t_3 = ucu_Q_t_15*ucu_q_in_base_x
-        ucu_M_ta_t_4 = (
-        ucu_M_ta_t - ucu_M_ta_t_2 - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_x -
-            ucu_axis_z_x*ucu_dalpha_c_in_base_x_2
-        )
-        ucu_M_ta_t_5 = (
-        axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_x + ucu_Q_t_10*ucu_q_in_base_z +
-            ucu_axis_z_y*ucu_dalpha_c_in_base_x_2 - ucu_Q_t_12*ucu_q_in_base_x
-        )
-        ucu_M_ta_t_6 = (
-        ucu_Q_t_10*ucu_q_in_base_y - axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_x -
-            ucu_Q_t_11*ucu_q_in_base_x - ucu_axis_z_z*ucu_dalpha_c_in_base_x_2
-        )
-        ucu_M_ta_t_7 = (
-        ucu_Q_t_14*ucu_q_in_base_z - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_y -
-            ucu_Q_t_15*ucu_q_in_base_y - ucu_axis_z_x*ucu_dalpha_c_in_base_y_2
-        )
-        ucu_M_ta_t_8 = (
-        ucu_M_ta_t + axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_y +
-            ucu_axis_z_y*ucu_dalpha_c_in_base_y_2 - ucu_M_ta_t_3
-        )
-        ucu_M_ta_t_9 = (
-        ucu_Q_t_11*ucu_q_in_base_y - axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_y -
-            ucu_Q_t_14*ucu_q_in_base_x - ucu_axis_z_z*ucu_dalpha_c_in_base_y_2
-        )
-        ucu_M_ta_t_10 = (
-        ucu_Q_t_15*ucu_q_in_base_z - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_z -
-            ucu_Q_t_17*ucu_q_in_base_y - ucu_axis_z_x*ucu_dalpha_c_in_base_z_2
-        )
-        ucu_M_ta_t_11 = (
-        axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_z + ucu_Q_t_12*ucu_q_in_base_z +
-            ucu_axis_z_y*ucu_dalpha_c_in_base_z_2 - ucu_Q_t_17*ucu_q_in_base_x
-        )
-        ucu_M_ta_t_12 = (
-        ucu_M_ta_t_3 + axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_z +
-            ucu_axis_z_z*ucu_dalpha_c_in_base_z_2 - ucu_M_ta_t_2
-        )
-        # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        ucu_dalpha_G_m1_t = inv_ucu_end_p1_r5_x*ucu_dalpha_Gamma_4_t
-        # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        ucu_d_G_m1_t = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_x
-        ucu_d_G_m1_t_2 = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_y
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_base_x = axis_x_ucu_axes4_x*ucu_end_p1_r3_x - ucu_axis_z_x*ucu_end_p1_r5_x
-        ucu_n_m1_in_base_y = axis_x_ucu_axes4_y*ucu_end_p1_r3_x - ucu_axis_z_y*ucu_end_p1_r5_x
-        ucu_n_m1_in_base_z = axis_x_ucu_axes4_z*ucu_end_p1_r3_x - ucu_axis_z_z*ucu_end_p1_r5_x
-        # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        ucu_dalpha_G_m1_in_base_y = (
-        axis_x_ucu_axes4_y*ucu_dalpha_G_m1_t - ucu_axis_z_y*ucu_d_Gamma_4_t
-        )
-        ucu_dalpha_G_m1_in_base_z = (
-        axis_x_ucu_axes4_z*ucu_dalpha_G_m1_t - ucu_axis_z_z*ucu_d_Gamma_4_t
-        )
-        # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        ucu_d_G_m1_in_base_x = (
-        -axis_x_ucu_axes4_x*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_x*ucu_d_G_m1_t_2
-        )
-        ucu_d_G_m1_in_base_y = (
-        -axis_x_ucu_axes4_y*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_y*ucu_d_G_m1_t_2
-        )
-        ucu_d_G_m1_in_base_z = (
-        -axis_x_ucu_axes4_z*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_z*ucu_d_G_m1_t_2
-        )
-        # (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_d_G_m_xx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_x
-        ucu_d_G_m_xy = ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_x
-        ucu_d_G_m_xz = ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_x
-        ucu_d_G_m_yx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_y
-        # (M_aa) rotational block of M
-        ucu_M_aa_t = (
-        ucu_M_ta_t_7*ucu_q_in_base_z + ucu_d_G_m_xy*ucu_q_in_base_z -
-            ucu_M_ta_t_10*ucu_q_in_base_y - ucu_d_G_m_xz*ucu_q_in_base_y -
-            ucu_n_m1_in_base_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_t -
-            ucu_axis_z_x*ucu_d_Gamma_4_t)
-        )
-        ucu_M_aa_t_2 = (
-        ucu_M_ta_t_8*ucu_q_in_base_z + ucu_d_G_m_xx*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_x - ucu_M_ta_t_11*ucu_q_in_base_y -
-            ucu_d_G_m_xz*ucu_q_in_base_x
-        )
-        ucu_M_aa_t_3 = (
-        ucu_M_ta_t_12*ucu_q_in_base_y + ucu_M_ta_t_9*ucu_q_in_base_z +
-            ucu_d_G_m_xx*ucu_q_in_base_y - ucu_d_G_m_xy*ucu_q_in_base_x -
-            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_x
-        )
-        ucu_M_aa_t_4 = (
-        ucu_M_ta_t_11*ucu_q_in_base_x + ucu_d_G_m_yx*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_y - ucu_M_ta_t_5*ucu_q_in_base_z -
-            ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_y*ucu_q_in_base_x
-        )
-        ucu_M_aa_t_5 = (
-        ucu_M_ta_t_12*ucu_q_in_base_x + ucu_M_ta_t_6*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_y +
-            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_y*ucu_q_in_base_x - ucu_d_G_m_yx*ucu_q_in_base_y
-        )
-        ucu_M_aa_t_6 = (
-        ucu_M_ta_t_6*ucu_q_in_base_y + ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_z*ucu_q_in_base_y -
-            ucu_M_ta_t_9*ucu_q_in_base_x - ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_z -
-            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_z*ucu_q_in_base_x
+        ucu_J_4_in_axes2_xz = (
+        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x + ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y
         )
         # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
-        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
-        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x
         ucu_S_dot_x = t_dot_x + ucu_S_dot_t
         ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
         ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
-        # (ucu-eta_1) rate at which the joints turn along moment direction 1
-        ucu_eta_1 = (
-        omega_x*ucu_n_m1_in_base_x + omega_y*ucu_n_m1_in_base_y + omega_z*ucu_n_m1_in_base_z
-        )
-        # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_r0_x = (
+        ucu_S_dot_t_4 = (
         ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
             ucu_S_dot_z*ucu_base_frame_zx
         )
-        ucu_S_dot_r0_y = (
+        ucu_S_dot_t_5 = (
         ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
             ucu_S_dot_z*ucu_base_frame_zy
         )
-        ucu_S_dot_r0_z = (
+        ucu_S_dot_t_6 = (
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
-        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_16 - ucu_S_dot_t_5*ucu_h_4_t_15
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z - ucu_S_dot_t_7*ucu_h_4_t_11
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_e_1_in_axes4_x = ucu_e_2_in_axes4_y*ucu_h_4_t_11
+        ucu_e_1_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_h_4_t_11
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_10
+        ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_h_4_t_10
+        ucu_v_1_in_axes2_y = (
+        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x - ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y
+        )
+        ucu_v_1_in_axes2_z = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
+        )
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_14 - ucu_h_4_t_11*ucu_h_4_t_17
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_10*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_10*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_3
+        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
+        ucu_n_m1_t_2 = ucu_e_2_in_axes4_y*ucu_h_4_t_15 - ucu_h_4_t_16*ucu_n_m1_t
+        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_16 + ucu_h_4_t_15*ucu_n_m1_t
+        axis_y_ucu_axes4_x = (
+        ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
+            ucu_base_frame_xz*ucu_e_1_in_axes4_y
+        )
+        axis_y_ucu_axes4_y = (
+        ucu_base_frame_yx*ucu_n_m1_t_2 + ucu_base_frame_yy*ucu_n_m1_t_3 +
+            ucu_base_frame_yz*ucu_e_1_in_axes4_y
+        )
+        axis_y_ucu_axes4_z = (
+        ucu_base_frame_zx*ucu_n_m1_t_2 + ucu_base_frame_zy*ucu_n_m1_t_3 +
+            ucu_base_frame_zz*ucu_e_1_in_axes4_y
+        )
+        axis_x_ucu_axes4_x = (
+        axis_y_ucu_axes4_y*axis_z_ucu_axes4_z - axis_y_ucu_axes4_z*axis_z_ucu_axes4_y
+        )
+        axis_x_ucu_axes4_y = (
+        axis_y_ucu_axes4_z*axis_z_ucu_axes4_x - axis_y_ucu_axes4_x*axis_z_ucu_axes4_z
+        )
+        axis_x_ucu_axes4_z = (
+        axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
+        )
+        ucu_end_p1_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_y + ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x
+        )
+        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_n_m1_x = (
+        axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x
+        )
+        ucu_n_m1_y = (
+        axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x
+        )
+        ucu_n_m1_z = (
+        axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x
+        )
+        # (ucu-w_1) force part of reciprocal wrench 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x
+        ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y
+        # (ucu-w_2) force part of reciprocal wrench 2
+        ucu_w_2_t = inv_ucu_h_4_t_10*inv_ucu_v_1_in_axes2_z*ucu_v_1_in_axes2_y
+        ucu_w_2_in_axes4_x = inv_ucu_h_4_t_10*ucu_e_2_in_axes4_y - ucu_e_2_in_axes4_x*ucu_w_2_t
+        ucu_w_2_in_axes4_y = -inv_ucu_h_4_t_10*ucu_e_2_in_axes4_x - ucu_e_2_in_axes4_y*ucu_w_2_t
+        # (ucu-w_4) force part of reciprocal wrench 4
+        ucu_w_4_t = (
+        ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x - ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x
+        )
+        ucu_w_4_t_2 = -1.0/ucu_end_p1_in_axes4_x
+        ucu_w_4_t_3 = -inv_ucu_h_4_t_10*ucu_n_m1_in_axes2_z*ucu_w_4_t_2
+        ucu_w_4_t_4 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_v_1_in_axes2_y*ucu_w_4_t_3 - ucu_w_4_t*ucu_w_4_t_2)
+        )
+        ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_3 - ucu_e_2_in_axes4_x*ucu_w_4_t_4
+        ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_3 - ucu_e_2_in_axes4_y*ucu_w_4_t_4
+        # (ucu-o_4) moment part of reciprocal wrench 4
+        ucu_o_4_in_axes4_x = ucu_n_m1_in_axes4_x*ucu_w_4_t_2
+        # (ucu-eta_1) rate at which the joints turn along moment direction 1
+        ucu_eta_1 = omega_x*ucu_n_m1_x + omega_y*ucu_n_m1_y + omega_z*ucu_n_m1_z
+        # (ucu-qd_1) rate of joint 1
+        ucu_qd_1 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_h_4_t_15 + ucu_S_dot_t_5*ucu_h_4_t_16)
+        )
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_h_4_t_10*(ucu_S_dot_t_6*ucu_h_4_t_11 + ucu_S_dot_t_7*ucu_e_1_in_axes4_z -
+            ucu_qd_1*ucu_v_1_in_axes2_y)
+        )
         # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
-        ucu_qd_4_t_2 = (
-        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
-            ucu_qd_4_t*ucu_v_1_r0_x)
-        )
-        ucu_qd_4_t_3 = (
-        inv_ucu_end_p1_r5_x*(ucu_eta_1 + ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
-        )
+        ucu_qd_4 = ucu_w_4_t_2*(ucu_eta_1 + ucu_qd_1*ucu_w_4_t - ucu_n_m1_in_axes2_z*ucu_qd_2)
         # (ucu-omega_1) angular velocity of link 1
-        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
-        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
+        ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1
+        ucu_omega_1_in_axes2_y = ucu_h_4_t_11*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
-        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
+        ucu_omega_2_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_qd_2 + ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y
+        )
+        ucu_omega_2_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_qd_2 - ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y
+        )
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
+        ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
+        ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y
+        ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y
         # (ucu-omega_4) angular velocity of link 4
-        ucu_omega_4_z = ucu_omega_1_t - ucu_qd_4_t_3
-        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_4_t_3
+        ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
+        # (ucu-W_4) centripetal tensor of link 4
+        ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z
+        ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z
         # (ucu-u_1) centripetal acceleration of the connection point
         ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
         ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
         ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2
-        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
-        # (ucu-W_2) centripetal tensor of link 2
-        ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t
-        ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2
-        ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2
-        ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
-        # (ucu-W_2) centripetal tensor of link 2
-        ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x
-        ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y
-        ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y
-        # (ucu-bias) acceleration of the connection point at zero joint accelerations
-        ucu_bias_t = 2.0*ucu_S_dot_r3_x
-        ucu_bias_x = (
-        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
-            ucu_s_4*ucu_zeta_2_y)
-        )
-        ucu_bias_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
-        )
-        # (ucu-u_1) centripetal acceleration of the connection point
-        ucu_u_1_tip_x = (
+        ucu_u_1_in_axes4_x = (
         axis_x_ucu_axes4_x*ucu_u_1_x + axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z
         )
-        ucu_u_1_tip_y = (
-        axis_y_ucu_axes4_in_base_x*ucu_u_1_x + axis_y_ucu_axes4_in_base_y*ucu_u_1_y +
-            axis_y_ucu_axes4_in_base_z*ucu_u_1_z
+        ucu_u_1_in_axes4_y = (
+        axis_y_ucu_axes4_x*ucu_u_1_x + axis_y_ucu_axes4_y*ucu_u_1_y + axis_y_ucu_axes4_z*ucu_u_1_z
+        )
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_y
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
+        ucu_bias_in_axes4_x = (
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_h_4_t_10*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
+        )
+        ucu_bias_in_axes4_y = (
+        ucu_h_4_t_10*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+            ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        ucu_rel_o_x = ucu_u_1_tip_x - ucu_bias_x
-        ucu_rel_o_y = ucu_u_1_tip_y - ucu_bias_y
-        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
-        ucu_beta_4_x = -ucu_zeta_2_t - ucu_zeta_4_x
+        ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x
+        ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_omega_tip_x = (
+        ucu_end_p1_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_y - ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x
+        )
+        ucu_omega_in_axes4_x = (
         axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        ucu_omega_tip_y = (
-        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
-            axis_y_ucu_axes4_in_base_z*omega_z
+        ucu_omega_in_axes4_y = (
+        axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
-        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
-        ucu_nd_m1_x = (
-        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_2_r1_x
+        ucu_omega_in_axes4_z = (
+        axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y + axis_z_ucu_axes4_z*omega_z
         )
-        ucu_nd_m1_z = (
-        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_4_z
+        ucu_nd_m1_in_axes4_x = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
+        )
+        ucu_nd_m1_in_axes4_z = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
+            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
         )
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x
-        ucu_nu_1_t_2 = (
-        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
-            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
-            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
+        ucu_nu_1_t = (
+        ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x - ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x
         )
-        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
-        # (ucu-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
-        ucu_qdd_4_o_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_o_y + ucu_rel_o_x*ucu_s_4)
-        ucu_qdd_4_o_t_2 = (
-        inv_ucu_root_2*(ucu_qdd_4_o_t*ucu_v_1_r0_x + ucu_rel_o_y*ucu_s_4 - ucu_c_4*ucu_rel_o_x)
+        ucu_nu_1_t_2 = (
+        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
+            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
+            (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
+        )
+        ucu_nu_1 = ucu_nu_1_t - ucu_nu_1_t_2
+        # (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        ucu_qdd_1_o = (
+        inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y)
+        )
+        # (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        ucu_qdd_2_o = (
+        -inv_ucu_h_4_t_10*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y +
+            ucu_qdd_1_o*ucu_v_1_in_axes2_y - ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x)
         )
         # (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ucu_alpha_1_o_t = ucu_qdd_4_o_t*ucu_s_2
-        ucu_alpha_1_o_t_2 = ucu_c_2*ucu_qdd_4_o_t
+        ucu_alpha_1_o_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1_o
+        ucu_alpha_1_o_in_axes2_y = ucu_h_4_t_11*ucu_qdd_1_o
         # (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        ucu_alpha_2_o_x = ucu_alpha_1_o_t - ucu_zeta_2_x
-        ucu_alpha_2_o_y = -ucu_alpha_1_o_t_2 - ucu_zeta_2_y
+        ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x
+        ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz
+        # (ucu-B_2_o) remainder of the acceleration tensor of link 2
+        ucu_B_2_o_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2_o
+        ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o
+        ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y
+        ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x
+        # (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
+        ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y + ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y
         # (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
-        ucu_alpha_4_o_x = ucu_alpha_2_o_y*ucu_c_4 - ucu_zeta_4_x - ucu_qdd_4_o_t_2*ucu_s_4
-        ucu_alpha_4_o_y = (
-        ucu_omega_2_r1_x*ucu_qd_4_t_3 - ucu_alpha_2_o_y*ucu_s_4 - ucu_c_4*ucu_qdd_4_o_t_2
+        ucu_alpha_4_o_in_axes4_x = (
+        ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y +
+            ucu_e_2_in_axes4_x*ucu_qdd_2_o
         )
-        ucu_alpha_4_o_z = (
-        ucu_alpha_2_o_x - inv_ucu_end_p1_r5_x*(ucu_nu_1 + ucu_n_m1_t*ucu_qdd_4_o_t_2 +
-            ucu_qdd_4_o_t*ucu_w_1_t_2)
+        ucu_alpha_4_o_in_axes4_y = (
+        ucu_e_2_in_axes4_y*ucu_qdd_2_o - ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_x -
+            ucu_omega_2_in_axes4_x*ucu_qd_4
         )
-        # (ucu-W_4) centripetal tensor of link 4
-        ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z
-        ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z
-        ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z
+        ucu_alpha_4_o_in_axes4_z = (
+        ucu_alpha_2_o_in_axes2_x + ucu_w_4_t_2*(ucu_nu_1 + ucu_qdd_1_o*ucu_w_4_t -
+            ucu_n_m1_in_axes2_z*ucu_qdd_2_o)
+        )
         # (ucu-B_4_o) remainder of the acceleration tensor of link 4
-        ucu_B_4_o_xy = ucu_W_2_xy_2 - ucu_alpha_4_o_z
-        ucu_B_4_o_xz = ucu_W_4_xz + ucu_alpha_4_o_y
-        ucu_B_4_o_yx = ucu_W_2_xy_2 + ucu_alpha_4_o_z
-        ucu_B_4_o_yz = ucu_W_4_yz - ucu_alpha_4_o_x
-        ucu_B_4_o_zx = ucu_W_4_xz - ucu_alpha_4_o_y
-        ucu_B_4_o_zy = ucu_W_4_yz + ucu_alpha_4_o_x
-        # (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
-        ucu_phi_4_o_z = (
-        ucu_B_4_o_zx*ucu_h_4_y + ucu_B_4_o_zy*ucu_h_4_z - ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5)
-        )
+        ucu_B_4_o_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z
+        ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y
+        ucu_B_4_o_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z
+        ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x
+        ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y
+        ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x
         # (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        ucu_acc_4_o_x = (
-        ucu_u_1_tip_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
+        ucu_acc_4_o_in_axes4_x = (
+        ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
             axis_x_ucu_axes4_z*gravity_z
         )
-        ucu_acc_4_o_y = (
-        ucu_u_1_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
-            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z
+        ucu_acc_4_o_in_axes4_y = (
+        ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*gravity_x - axis_y_ucu_axes4_y*gravity_y -
+            axis_y_ucu_axes4_z*gravity_z
         )
-        ucu_acc_4_o_z = (
-        ucu_axis_z_x*ucu_u_1_x + ucu_axis_z_y*ucu_u_1_y + ucu_axis_z_z*ucu_u_1_z -
-            gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y - gravity_z*ucu_axis_z_z
+        ucu_acc_4_o_in_axes4_z = (
+        axis_z_ucu_axes4_x*ucu_u_1_x + axis_z_ucu_axes4_y*ucu_u_1_y + axis_z_ucu_axes4_z*ucu_u_1_z
+            - axis_z_ucu_axes4_x*gravity_x - axis_z_ucu_axes4_y*gravity_y -
+            axis_z_ucu_axes4_z*gravity_z
+        )
+        # (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
+        ucu_phi_4_o_in_axes4_z = (
+        ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y + ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z -
+            ucu_h_4_in_spec4_x*(ucu_phi_4_o_t + ucu_phi_4_o_t_2)
+        )
+        # (ucu-D_1_4) inertia of joint 4 along joint 1
+        ucu_D_1_4 = (
+        ucu_J_4_in_spec4_xx*ucu_e_1_in_axes4_z + ucu_J_4_in_spec4_xy*ucu_e_1_in_axes4_x +
+            ucu_J_4_in_spec4_xz*ucu_e_1_in_axes4_y
+        )
+        # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x
+        ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t
+        ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y
+        ucu_Jc_2_t_4 = ucu_Jc_2_t_3 - ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x
+        ucu_Jc_2_in_axes2_xy = (
+        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_xz -
+            ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x
+        )
+        ucu_Jc_2_in_axes1_xz = (
+        ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy + ucu_J_4_in_axes2_xz) +
+            ucu_h_4_t_11*(ucu_Jc_2_t_2*ucu_e_2_in_axes4_x + ucu_Jc_2_t_4*ucu_e_2_in_axes4_y -
+            ucu_J_2_in_spec2_yz)
         )
         # (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        ucu_mu_4_o_x = (
-        ucu_B_4_o_yx*ucu_J_4_xy + ucu_B_4_o_zy*ucu_Sigma_4_yy + ucu_J_4_xz*(ucu_W_2_t_5 -
-            ucu_W_4_t) + ucu_acc_4_o_z*ucu_h_4_z - ucu_B_4_o_yz*ucu_Sigma_4_zz -
-            ucu_B_4_o_zx*ucu_J_4_yz - ucu_acc_4_o_y*ucu_h_4_x
+        ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
+        ucu_mu_4_o_in_axes4_x = (
+        ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_o_in_axes4_zy*ucu_Sigma_4_in_axes4_yy
+            + ucu_J_4_in_spec4_xz*(ucu_phi_4_o_t_2 - ucu_mu_4_o_t) +
+            ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_z -
+            ucu_B_4_o_in_axes4_yz*ucu_Sigma_4_in_axes4_zz -
+            ucu_B_4_o_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_x
         )
-        ucu_mu_4_o_y = (
-        ucu_B_4_o_xz*ucu_Sigma_4_zz + ucu_B_4_o_zy*ucu_J_4_yz + ucu_acc_4_o_x*ucu_h_4_x -
-            ucu_B_4_o_xy*ucu_J_4_xz - ucu_B_4_o_zx*ucu_Sigma_4_xx - ucu_J_4_xy*(ucu_W_2_t_4 -
-            ucu_W_4_t) - ucu_acc_4_o_z*ucu_h_4_y
+        ucu_mu_4_o_in_axes4_y = (
+        ucu_B_4_o_in_axes4_xz*ucu_Sigma_4_in_axes4_zz + ucu_B_4_o_in_axes4_zy*ucu_J_4_in_spec4_yz
+            + ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_x -
+            ucu_B_4_o_in_axes4_xy*ucu_J_4_in_spec4_xz -
+            ucu_B_4_o_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_o_t -
+            ucu_mu_4_o_t) - ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_y
         )
-        ucu_mu_4_o_z = (
-        ucu_B_4_o_xz*ucu_J_4_xz + ucu_B_4_o_yx*ucu_Sigma_4_xx + ucu_J_4_yz*(ucu_W_2_t_4 -
-            ucu_W_2_t_5) + ucu_acc_4_o_y*ucu_h_4_y - ucu_B_4_o_xy*ucu_Sigma_4_yy -
-            ucu_B_4_o_yz*ucu_J_4_xy - ucu_acc_4_o_x*ucu_h_4_z
+        ucu_mu_4_o_in_axes4_z = (
+        ucu_B_4_o_in_axes4_xz*ucu_J_4_in_spec4_xz + ucu_B_4_o_in_axes4_yx*ucu_Sigma_4_in_axes4_xx
+            + ucu_J_4_in_spec4_yz*(ucu_phi_4_o_t - ucu_phi_4_o_t_2) +
+            ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
+            ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z
         )
-        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x
-        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
-        ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y
-        ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2
-        # (ucu-B_2_o) remainder of the acceleration tensor of link 2
-        ucu_B_2_o_xy = ucu_qdd_4_o_t_2 - ucu_W_2_xy
-        ucu_B_2_o_yx = -ucu_W_2_xy - ucu_qdd_4_o_t_2
-        ucu_B_2_o_zx = ucu_zeta_2_y - ucu_alpha_2_o_y
-        ucu_B_2_o_zy = ucu_alpha_2_o_x - ucu_zeta_2_x
+        # (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_4_t = -ucu_J_4_in_spec4_xx*ucu_o_4_in_axes4_x
+        # (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        ucu_d_Gamma_4_t = ucu_J_4_in_spec4_xx*ucu_w_4_t_2
+        ucu_d_Gamma_4_t_2 = (
+        inv_ucu_h_4_t_10*(ucu_J_4_in_axes2_xz - ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z)
+        )
+        ucu_d_Gamma_4_t_3 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_4_t_2*ucu_v_1_in_axes2_y - ucu_D_1_4 -
+            ucu_d_Gamma_4_t*ucu_w_4_t)
+        )
+        ucu_d_Gamma_4_in_axes4_x = (
+        ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y - ucu_h_4_in_spec4_z -
+            ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x
+        )
+        ucu_d_Gamma_4_in_axes4_y = (
+        ucu_h_4_in_spec4_y - ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x -
+            ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y
+        )
         # (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        ucu_mu_2_o_x = (
-        ucu_B_2_o_yx*ucu_J_2_xy + ucu_B_2_o_zx*ucu_J_2_xz + ucu_B_2_o_zy*ucu_Sigma_2_yy +
-            ucu_Sigma_2_zz*ucu_alpha_1_o_t + ucu_g_r1_x*ucu_h_2_z + ucu_g_r3_y*ucu_h_2_y -
-            ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3)
+        ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
+        ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
+        ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2
+        ucu_g_in_axes2_z = ucu_h_4_t_15*ucu_mu_2_t + ucu_h_4_t_16*ucu_mu_2_t_2
+        ucu_mu_2_o_t_4 = ucu_h_4_t_15*ucu_mu_2_t_2 - ucu_h_4_t_16*ucu_mu_2_t
+        ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 + ucu_h_4_t_11*ucu_mu_2_o_t_4
+        ucu_g_in_axes2_y = ucu_h_4_t_11*ucu_mu_2_t_3 - ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4
+        ucu_mu_2_o_in_axes2_x = (
+        ucu_B_2_o_in_axes2_yx*ucu_J_2_in_spec2_xy + ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
+            ucu_B_2_o_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
+            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_o_t_2 -
+            ucu_mu_2_o_t_3)
         )
-        ucu_mu_2_o_y = (
-        ucu_B_2_o_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x - ucu_B_2_o_zx*ucu_Sigma_2_xx -
-            ucu_B_2_o_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t - ucu_W_2_t_3) -
-            ucu_Sigma_2_zz*ucu_alpha_1_o_t_2 - ucu_g_r3_x*ucu_h_2_y
+        ucu_mu_2_o_in_axes2_y = (
+        ucu_B_2_o_in_axes2_xy*ucu_J_2_in_spec2_yz +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
+            - ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_o_t -
+            ucu_mu_2_o_t_3) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y
         )
-        ucu_mu_2_o_z = (
-        ucu_B_2_o_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_o_t + ucu_J_2_yz*ucu_alpha_1_o_t_2 -
-            ucu_B_2_o_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t - ucu_W_2_t_2) -
-            ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x
+        ucu_mu_2_o_in_axes2_z = (
+        ucu_B_2_o_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
+            ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x -
+            ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_o_t -
+            ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         )
         # (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        ucu_N_2_o_x = ucu_mu_2_o_x + ucu_mu_4_o_z
-        ucu_N_2_o_y = ucu_mu_2_o_y + ucu_c_4*ucu_mu_4_o_x - ucu_mu_4_o_y*ucu_s_4
-        ucu_N_2_o_z = ucu_mu_2_o_z + ucu_c_4*ucu_mu_4_o_y + ucu_mu_4_o_x*ucu_s_4
-        # (ucu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_G_o_t = inv_ucu_end_p1_r5_x*ucu_mu_4_o_z
-        ucu_G_o_t_2 = inv_ucu_root_2*(ucu_N_2_o_z + ucu_G_o_t*ucu_n_m1_t)
-        ucu_G_o_t_3 = (
-        inv_ucu_v_1_r0_y*(ucu_G_o_t*ucu_w_1_t_2 + ucu_G_o_t_2*ucu_v_1_r0_x + ucu_N_2_o_y*ucu_c_2 -
-            ucu_N_2_o_x*ucu_s_2)
+        ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z
+        ucu_N_2_o_in_axes2_y = (
+        ucu_mu_2_o_in_axes2_y + ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
+            ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y
+        )
+        ucu_N_2_o_in_axes2_z = (
+        ucu_mu_2_o_in_axes2_z + ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y
+        )
+        # (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_2_in_axes4_x = ucu_J_4_in_axes2_xz*ucu_o_4_in_axes4_x
+        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_d_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_w_4_t_2
+        ucu_d_Gamma_2_t_2 = (
+        inv_ucu_h_4_t_10*(ucu_J_2_in_spec2_yy + ucu_e_2_in_axes4_x*(ucu_Jc_2_t_3 +
+            ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) + ucu_e_2_in_axes4_y*(ucu_Jc_2_t +
+            ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y) - ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z)
+        )
+        ucu_d_Gamma_2_in_axes2_z = (
+        -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t_2*ucu_v_1_in_axes2_y - ucu_Jc_2_in_axes1_xz -
+            ucu_d_Gamma_2_t*ucu_w_4_t)
+        )
+        ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x
+        ucu_d_Gamma_2_in_axes4_y = (
+        ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y - ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x
+        )
+        # (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        ucu_dalpha_Gamma_1_in_axes4_x = ucu_D_1_4*ucu_o_4_in_axes4_x
+        # (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        ucu_d_Gamma_1_t = ucu_D_1_4*ucu_w_4_t_2
+        ucu_d_Gamma_1_t_2 = (
+        inv_ucu_h_4_t_10*(ucu_Jc_2_in_axes1_xz - ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z)
+        )
+        ucu_d_Gamma_1_t_3 = (
+        ucu_d_Gamma_1_t_2*ucu_v_1_in_axes2_y - ucu_d_Gamma_1_t*ucu_w_4_t -
+            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z +
+            ucu_Jc_2_in_axes2_xy*ucu_h_4_t_11) -
+            ucu_h_4_t_11*(ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z +
+            ucu_h_4_t_11*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_2*ucu_e_2_in_axes4_y -
+            ucu_Jc_2_t_4*ucu_e_2_in_axes4_x))
+        )
+        ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_11
+        ucu_d_Gamma_1_in_axes1_x = (
+        ucu_e_1_in_axes4_z*ucu_h_4_in_axes2_y - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 -
+            ucu_h_4_in_spec4_x*ucu_h_4_t_11
+        )
+        ucu_d_Gamma_1_in_axes1_y = (
+        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z -
+            ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z
+        )
+        ucu_d_Gamma_1_in_axes4_z = (
+        ucu_d_Gamma_1_in_axes1_y*ucu_h_4_t_11 + ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z
+        )
+        ucu_d_Gamma_1_t_4 = (
+        ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_11 - ucu_d_Gamma_1_in_axes1_y*ucu_e_1_in_axes4_z
+        )
+        ucu_d_Gamma_1_in_axes4_y = (
+        ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_y - ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x
+        )
+        # (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_in_axes4_xz = (
+        ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x - ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_x
+        )
+        ucu_d_G_in_axes4_yz = (
+        ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_y - ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_y
+        )
+        # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_dalpha_G_m1_in_axes4_x = -ucu_dalpha_Gamma_4_t*ucu_w_4_t_2
+        ucu_dalpha_G_m1_y = (
+        axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x + axis_z_ucu_axes4_y*ucu_d_Gamma_4_t
+        )
+        ucu_dalpha_G_m1_z = (
+        axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x + axis_z_ucu_axes4_z*ucu_d_Gamma_4_t
+        )
+        # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_m1_in_axes4_x = ucu_d_Gamma_4_in_axes4_x*ucu_w_4_t_2
+        ucu_d_G_m1_in_axes4_y = ucu_d_Gamma_4_in_axes4_y*ucu_w_4_t_2
+        ucu_d_G_m1_x = (
+        axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x + axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y
+        )
+        ucu_d_G_m1_y = (
+        axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x + axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y
+        )
+        ucu_d_G_m1_z = (
+        axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x + axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y
+        )
+        # (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_G_m1_o = ucu_mu_4_o_in_axes4_z*ucu_w_4_t_2
+        # (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x
+        ucu_d_G_m_xy = ucu_d_G_m1_y*ucu_n_m1_x
+        ucu_d_G_m_xz = ucu_d_G_m1_z*ucu_n_m1_x
+        ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y
+        # (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_dalpha_c_in_axes4_xx = (
+        ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x + ucu_h_4_in_spec4_z*ucu_o_4_in_axes4_x -
+            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_x -
+            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_x
+        )
+        ucu_dalpha_c_in_axes4_xz = (
+        ucu_h_4_in_spec4_z - ucu_D_1_4*ucu_w_1_in_axes4_x - ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_x
+            - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_x
+        )
+        ucu_dalpha_c_in_axes4_yx = (
+        ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y - ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_y
+            - ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_y -
+            ucu_h_4_in_spec4_y*ucu_o_4_in_axes4_x
+        )
+        ucu_dalpha_c_in_axes4_yz = (
+        -ucu_h_4_in_spec4_y - ucu_D_1_4*ucu_w_1_in_axes4_y -
+            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_y - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_y
+        )
+        # (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_d_c_in_axes4_xx = (
+        ucu_h_4_in_spec4_z*(ucu_w_4_in_axes4_x + ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x) -
+            ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
+            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
+            ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_x +
+            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
+            ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
+            ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x)
+        )
+        ucu_d_c_in_axes4_xy = (
+        ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x
+            - ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
+            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
+            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
+            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y)
+        )
+        ucu_d_c_in_axes4_yy = (
+        ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_x*ucu_w_1_in_axes4_y +
+            ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
+            ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
+            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
+            ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y
         )
         # (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_o_x = (
-        ucu_G_o_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) - ucu_B_4_o_xy*ucu_h_4_z -
-            ucu_B_4_o_xz*ucu_h_4_x - ucu_G_o_t_2*ucu_c_4
+        ucu_c_o_t = inv_ucu_h_4_t_10*(ucu_N_2_o_in_axes2_z - ucu_G_m1_o*ucu_n_m1_in_axes2_z)
+        ucu_c_o_t_2 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_c_o_t*ucu_v_1_in_axes2_y - ucu_G_m1_o*ucu_w_4_t -
+            ucu_N_2_o_in_axes2_x*ucu_e_1_in_axes4_z - ucu_N_2_o_in_axes2_y*ucu_h_4_t_11)
         )
-        ucu_c_o_y = (
-        ucu_G_o_t_2*ucu_s_4 + ucu_G_o_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 + ucu_W_4_t) -
-            ucu_B_4_o_yx*ucu_h_4_y - ucu_B_4_o_yz*ucu_h_4_x
+        ucu_c_o_in_axes4_x = (
+        ucu_c_o_t_2*ucu_e_2_in_axes4_x + ucu_h_4_in_spec4_y*(ucu_mu_4_o_t + ucu_phi_4_o_t_2) -
+            ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x -
+            ucu_c_o_t*ucu_e_2_in_axes4_y
         )
+        ucu_c_o_in_axes4_y = (
+        ucu_c_o_t*ucu_e_2_in_axes4_x + ucu_c_o_t_2*ucu_e_2_in_axes4_y +
+            ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
+            ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
+        )
+        # (ucu-Q) inertia of the leg at the connection point, without the mass gathered there
+        ucu_Q_t = 0.5*ucu_d_c_in_axes4_xx
+        ucu_Q_t_2 = 0.5*ucu_d_c_in_axes4_yy
+        ucu_Q_t_3 = (
+        axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy -
+            axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz
+        )
+        ucu_Q_t_4 = (
+        axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t -
+            axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy
+        )
+        ucu_Q_t_5 = (
+        axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy -
+            axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz
+        )
+        ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz - axis_y_ucu_axes4_x*ucu_Q_t_2
+        ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 - axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz
+        ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz
+        ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6
+        ucu_Q_xx = -2.0*ucu_Q_t_9
+        ucu_Q_xy = (
+        axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 - axis_x_ucu_axes4_y*ucu_Q_t_3
+            - axis_y_ucu_axes4_x*ucu_Q_t_7
+        )
+        ucu_Q_xz = (
+        axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 - axis_x_ucu_axes4_z*ucu_Q_t_3
+            - axis_y_ucu_axes4_x*ucu_Q_t_8
+        )
+        ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4
+        ucu_Q_yy = -2.0*ucu_Q_t_10
+        ucu_Q_yz = (
+        axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 - axis_y_ucu_axes4_y*ucu_Q_t_8
+            - axis_y_ucu_axes4_z*ucu_Q_t_7
+        )
+        ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8
+        ucu_Q_zz = -2.0*ucu_Q_t_11
+        # (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        ucu_c_m_o_in_axes4_x = -ucu_G_m1_o*ucu_n_m1_in_axes4_x
         # (ucu-U) velocity and gravity terms of the leg force
-        ucu_U_in_base_x = (
-        ucu_axis_z_x*ucu_phi_4_o_z - axis_x_ucu_axes4_x*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_x*ucu_c_o_y
+        ucu_U_x = (
+        axis_z_ucu_axes4_x*ucu_phi_4_o_in_axes4_z - axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x -
+            axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y
         )
-        ucu_U_in_base_y = (
-        ucu_axis_z_y*ucu_phi_4_o_z - axis_x_ucu_axes4_y*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_y*ucu_c_o_y
+        ucu_U_y = (
+        axis_z_ucu_axes4_y*ucu_phi_4_o_in_axes4_z - axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x -
+            axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y
         )
-        ucu_U_in_base_z = (
-        ucu_axis_z_z*ucu_phi_4_o_z - axis_x_ucu_axes4_z*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_z*ucu_c_o_y
+        ucu_U_z = (
+        axis_z_ucu_axes4_z*ucu_phi_4_o_in_axes4_z - axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x -
+            axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y
         )
-        # (ucu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_G_m_o_x = ucu_G_o_t*ucu_end_p1_r3_x
+        # (M_ta) coupling block of M
+        ucu_M_ta_t = (
+        axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx + axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx
+        )
+        ucu_M_ta_t_2 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx + axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx
+        )
+        ucu_M_ta_t_3 = (
+        axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx + axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx
+        )
+        ucu_M_ta_t_4 = (
+        axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz + axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz
+        )
+        ucu_M_ta_t_5 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz + axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz
+        )
+        ucu_M_ta_t_6 = (
+        axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz + axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz
+        )
+        ucu_M_ta_t_7 = -ucu_Q_xy*ucu_q_z
+        ucu_M_ta_t_8 = ucu_Q_xz*ucu_q_y
+        ucu_M_ta_t_9 = ucu_Q_yz*ucu_q_x
+        ucu_M_ta_t_10 = (
+        ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
+            axis_z_ucu_axes4_x*ucu_M_ta_t_4
+        )
+        ucu_M_ta_t_11 = (
+        ucu_Q_xx*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t - axis_z_ucu_axes4_y*ucu_M_ta_t_4 -
+            ucu_Q_xz*ucu_q_x
+        )
+        ucu_M_ta_t_12 = (
+        ucu_Q_xy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t - axis_z_ucu_axes4_z*ucu_M_ta_t_4 -
+            ucu_Q_xx*ucu_q_y
+        )
+        ucu_M_ta_t_13 = (
+        ucu_Q_yz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 - axis_z_ucu_axes4_x*ucu_M_ta_t_5 -
+            ucu_Q_yy*ucu_q_z
+        )
+        ucu_M_ta_t_14 = (
+        ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
+            axis_z_ucu_axes4_y*ucu_M_ta_t_5
+        )
+        ucu_M_ta_t_15 = (
+        ucu_Q_yy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 - axis_z_ucu_axes4_z*ucu_M_ta_t_5 -
+            ucu_Q_xy*ucu_q_y
+        )
+        ucu_M_ta_t_16 = (
+        ucu_Q_zz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 - axis_z_ucu_axes4_x*ucu_M_ta_t_6 -
+            ucu_Q_yz*ucu_q_z
+        )
+        ucu_M_ta_t_17 = (
+        ucu_Q_xz*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 - axis_z_ucu_axes4_y*ucu_M_ta_t_6 -
+            ucu_Q_zz*ucu_q_x
+        )
+        ucu_M_ta_t_18 = (
+        ucu_M_ta_t_9 - ucu_M_ta_t_8 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
+            axis_z_ucu_axes4_z*ucu_M_ta_t_6
+        )
+        # (M_aa) rotational block of M
+        ucu_M_aa_t = (
+        ucu_M_ta_t_16*ucu_q_y + ucu_d_G_m_xz*ucu_q_y +
+            ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x +
+            axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*ucu_q_z - ucu_d_G_m_xy*ucu_q_z
+        )
+        ucu_M_aa_t_2 = (
+        ucu_M_ta_t_14*ucu_q_z + ucu_M_ta_t_17*ucu_q_y + ucu_d_G_m_xx*ucu_q_z +
+            ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*ucu_q_x
+        )
+        ucu_M_aa_t_3 = (
+        ucu_M_ta_t_18*ucu_q_y + ucu_d_G_m_xy*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_x -
+            ucu_M_ta_t_15*ucu_q_z - ucu_d_G_m_xx*ucu_q_y
+        )
+        ucu_M_aa_t_4 = (
+        ucu_M_ta_t_11*ucu_q_z + ucu_d_G_m_yx*ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_y -
+            ucu_M_ta_t_17*ucu_q_x - ucu_d_G_m1_z*ucu_n_m1_y*ucu_q_x
+        )
+        ucu_M_aa_t_5 = (
+        ucu_M_ta_t_12*ucu_q_z + ucu_dalpha_G_m1_z*ucu_n_m1_y + ucu_d_G_m1_y*ucu_n_m1_y*ucu_q_x -
+            ucu_M_ta_t_18*ucu_q_x - ucu_d_G_m_yx*ucu_q_y
+        )
+        ucu_M_aa_t_6 = (
+        ucu_M_ta_t_15*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_z + ucu_d_G_m1_y*ucu_n_m1_z*ucu_q_x -
+            ucu_M_ta_t_12*ucu_q_y - ucu_d_G_m1_x*ucu_n_m1_z*ucu_q_y
+        )
         # (Z_a) rotational part of Z
         ucu_Z_a_t = (
-        ucu_U_in_base_z*ucu_q_in_base_y + ucu_axis_z_x*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_x*ucu_G_m_o_x - ucu_U_in_base_y*ucu_q_in_base_z
+        axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z + ucu_U_z*ucu_q_y -
+            axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*ucu_q_z
         )
         ucu_Z_a_t_2 = (
-        ucu_U_in_base_x*ucu_q_in_base_z + ucu_axis_z_y*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_y*ucu_G_m_o_x - ucu_U_in_base_z*ucu_q_in_base_x
+        axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z + ucu_U_x*ucu_q_z -
+            axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*ucu_q_x
         )
         ucu_Z_a_t_3 = (
-        ucu_U_in_base_y*ucu_q_in_base_x + ucu_axis_z_z*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_z*ucu_G_m_o_x - ucu_U_in_base_x*ucu_q_in_base_y
+        axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z + ucu_U_y*ucu_q_x -
+            axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*ucu_q_y
         )
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
-        ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z
-        ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x
-        ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y
+        ucu_H_a_3_x = axis_z_ucu_axes4_z*ucu_q_y - axis_z_ucu_axes4_y*ucu_q_z
+        ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x
+        ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y
         ok = (
-        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
-            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_h_4_t_6) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_9) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_h_4_t_18)
+            > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_h_4_t_10) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ucu_Q_t_10, ucu_Q_t_11, ucu_Q_t_12, ucu_Q_t_14, ucu_Q_t_15, ucu_Q_t_17, ucu_M_ta_t_4,
-            ucu_M_ta_t_5, ucu_M_ta_t_6, ucu_M_ta_t_7, ucu_M_ta_t_8, ucu_M_ta_t_9,
-            ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12, ucu_M_aa_t, ucu_M_aa_t_2,
-            ucu_M_aa_t_3, ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6, ucu_U_in_base_x,
-            ucu_U_in_base_y, ucu_U_in_base_z, ucu_Z_a_t, ucu_Z_a_t_2, ucu_Z_a_t_3,
+        ucu_Q_xx, ucu_Q_xy, ucu_Q_xz, ucu_Q_yy, ucu_Q_yz, ucu_Q_zz, ucu_M_ta_t_10,
+            ucu_M_ta_t_11, ucu_M_ta_t_12, ucu_M_ta_t_13, ucu_M_ta_t_14, ucu_M_ta_t_15,
+            ucu_M_ta_t_16, ucu_M_ta_t_17, ucu_M_ta_t_18, ucu_M_aa_t, ucu_M_aa_t_2,
+            ucu_M_aa_t_3, ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6, ucu_U_x, ucu_U_y, ucu_U_z,
+            ucu_Z_a_t, ucu_Z_a_t_2, ucu_Z_a_t_3,
         ))
-        out_H[_H_ucu[0][leg]] = ucu_axis_z_x
-        out_H[_H_ucu[1][leg]] = ucu_axis_z_y
-        out_H[_H_ucu[2][leg]] = ucu_axis_z_z
-        out_H[_H_ucu[3][leg]] = ucu_H_a_3_t
-        out_H[_H_ucu[4][leg]] = ucu_H_a_3_t_2
-        out_H[_H_ucu[5][leg]] = ucu_H_a_3_t_3
+        # (ucu-w_3) force part of reciprocal wrench 3
+        out_H[_H_ucu[0][leg]] = axis_z_ucu_axes4_x
+        out_H[_H_ucu[1][leg]] = axis_z_ucu_axes4_y
+        out_H[_H_ucu[2][leg]] = axis_z_ucu_axes4_z
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        out_H[_H_ucu[3][leg]] = ucu_H_a_3_x
+        out_H[_H_ucu[4][leg]] = ucu_H_a_3_y
+        out_H[_H_ucu[5][leg]] = ucu_H_a_3_z
     (
-    total_ucu_xx, total_ucu_xy, total_ucu_xz, total_ucu_yy, total_ucu_yz, total_ucu_zz,
-        total_ucu_xx_2, total_ucu_xy_2, total_ucu_xz_2, total_ucu_yx, total_ucu_yy_2,
-        total_ucu_yz_2, total_ucu_zx, total_ucu_zy, total_ucu_zz_2, total_ucu_xx_3,
-        total_ucu_xy_3, total_ucu_xz_3, total_ucu_yy_3, total_ucu_yz_3, total_ucu_zz_3,
-        total_ucu_x, total_ucu_y, total_ucu_z, total_ucu_x_2, total_ucu_y_2, total_ucu_z_2,
+    M_tt_ucu_xx, M_tt_xy, M_tt_xz, M_tt_ucu_yy, M_tt_yz, M_tt_ucu_zz, M_ta_xx, M_ta_ucu_xy,
+        M_ta_ucu_xz, M_ta_ucu_yx, M_ta_t, M_ta_ucu_yz, M_ta_ucu_zx, M_ta_ucu_zy, M_ta_zz,
+        M_aa_ucu_xx, M_aa_ucu_xy, M_aa_ucu_xz, M_aa_ucu_yy, M_aa_ucu_yz, M_aa_ucu_zz, Z_t_ucu_x,
+        Z_t_ucu_y, Z_t_ucu_z, Z_a_ucu_x, Z_a_ucu_y, Z_a_ucu_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_ucu_xx
-    M_tt_yy = m_star - total_ucu_yy
-    M_tt_zz = m_star - total_ucu_zz
+    M_tt_xx = M_tt_ucu_xx + m_star
+    M_tt_yy = M_tt_ucu_yy + m_star
+    M_tt_zz = M_tt_ucu_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_ucu_xy_2
-    M_ta_xz = total_ucu_xz_2 - h_star_in_base_y
-    M_ta_yx = total_ucu_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_ucu_yz_2
-    M_ta_zx = h_star_in_base_y + total_ucu_zx
-    M_ta_zy = -h_star_in_base_x - total_ucu_zy
+    M_ta_xy = M_ta_ucu_xy + h_star_z
+    M_ta_xz = M_ta_ucu_xz - h_star_y
+    M_ta_yx = M_ta_ucu_yx - h_star_z
+    M_ta_yz = M_ta_ucu_yz + h_star_x
+    M_ta_zx = M_ta_ucu_zx + h_star_y
+    M_ta_zy = M_ta_ucu_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_ucu_xx_3
-    M_aa_xy = J_star_t_9 + total_ucu_xy_3
-    M_aa_xz = J_star_t_10 - total_ucu_xz_3
-    M_aa_yy = J_star_t_13 + total_ucu_yy_3
-    M_aa_yz = J_star_t_15 + total_ucu_yz_3
-    M_aa_zz = J_star_t_17 - total_ucu_zz_3
+    M_aa_xx = J_star_xx + M_aa_ucu_xx
+    M_aa_xy = J_star_xy + M_aa_ucu_xy
+    M_aa_xz = J_star_xz + M_aa_ucu_xz
+    M_aa_yy = J_star_yy + M_aa_ucu_yy
+    M_aa_yz = J_star_yz + M_aa_ucu_yz
+    M_aa_zz = J_star_zz + M_aa_ucu_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_ucu_x
-    Z_t_y = Z_p_y + total_ucu_y
-    Z_t_z = Z_p_z + total_ucu_z
+    Z_t_x = Z_p_x + Z_t_ucu_x
+    Z_t_y = Z_p_y + Z_t_ucu_y
+    Z_t_z = Z_p_z + Z_t_ucu_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_ucu_x_2
-    Z_a_y = Z_q_in_base_y + total_ucu_y_2
-    Z_a_z = Z_q_in_base_z + total_ucu_z_2
+    Z_a_x = Z_a_ucu_x + Z_q_x
+    Z_a_y = Z_a_ucu_y + Z_q_y
+    Z_a_z = Z_a_ucu_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_ucu_xy
-    out_M[6] = -total_ucu_xy
-    out_M[2] = -total_ucu_xz
-    out_M[12] = -total_ucu_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_ucu_yz
-    out_M[13] = -total_ucu_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_ucu_xx_2
-    out_M[18] = total_ucu_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_ucu_yy_2
-    out_M[25] = -total_ucu_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_ucu_zz_2
-    out_M[32] = -total_ucu_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2209,9 +2335,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2223,8 +2351,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2264,493 +2393,537 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yy, ucu_J_2_yz, ucu_J_2_zz, ucu_J_4_xx, ucu_J_4_xy,
-            ucu_J_4_xz, ucu_J_4_yy, ucu_J_4_yz, ucu_J_4_zz, ucu_Jc_2_xx, ucu_base_frame_xx,
-            ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
-            ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
-            ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2,
-            ucu_branch_4, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_platform_joint_axis_platform_x,
+        ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yy, ucu_J_2_in_spec2_yz,
+            ucu_J_2_in_spec2_zz, ucu_J_4_in_spec4_xx, ucu_J_4_in_spec4_xy, ucu_J_4_in_spec4_xz,
+            ucu_J_4_in_spec4_yy, ucu_J_4_in_spec4_yz, ucu_J_4_in_spec4_zz, ucu_Jc_2_in_axes2_xx,
+            ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y,
+            ucu_h_4_in_spec4_z, ucu_platform_joint_axis_platform_x,
             ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
-        # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        # (ucu-h_4) first moment of link 4 about the connection point
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
-        # (ucu-px_1) component along the reference direction
-        ucu_px_1 = (
-        ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
+        ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x
+        ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y
+        ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z
+        ucu_h_4_t_4 = (
+        ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+            ucu_base_frame_zx*ucu_h_4_t_3
         )
-        # (ucu-py_1) component across the reference direction
-        ucu_py_1 = (
-        ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy + ucu_S_z*ucu_base_frame_zy
+        ucu_h_4_t_5 = (
+        ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+            ucu_base_frame_zy*ucu_h_4_t_3
         )
-        # (ucu-rho2_1) squared amplitude
-        ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
-        # (ucu-root_1) amplitude, with the sign of the branch
-        ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
-        # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
-        ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
+        ucu_h_4_t_6 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5
+        ucu_h_4_t_7 = ucu_branch_1*sqrt(ucu_h_4_t_6)
+        ucu_h_4_t_8 = (
+        ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+            ucu_base_frame_zz*ucu_h_4_t_3
         )
-        # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
-        # (ucu-root_2) amplitude, with the sign of the branch
-        ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
-        # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_h_4_t_9 = ucu_h_4_t_6 + ucu_h_4_t_8*ucu_h_4_t_8
+        ucu_h_4_t_10 = ucu_branch_2*sqrt(ucu_h_4_t_9)
+        inv_ucu_h_4_t_10 = 1.0/ucu_h_4_t_10
+        ucu_h_4_t_11 = -inv_ucu_h_4_t_10*ucu_h_4_t_7
+        ucu_e_1_in_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_8
+        ucu_h_4_t_12 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_h_4_t_13 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_h_4_t_14 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
-        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
-        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
-        # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
-        # (ucu-root_4) amplitude, with the sign of the branch
-        ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
-        # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
+        inv_ucu_h_4_t_7 = 1.0/ucu_h_4_t_7
+        ucu_h_4_t_15 = -inv_ucu_h_4_t_7*ucu_h_4_t_5
+        ucu_h_4_t_16 = inv_ucu_h_4_t_7*ucu_h_4_t_4
+        ucu_end_p1_in_turn4_y = ucu_h_4_t_12*ucu_h_4_t_15 + ucu_h_4_t_13*ucu_h_4_t_16
+        ucu_h_4_t_17 = ucu_h_4_t_12*ucu_h_4_t_16 - ucu_h_4_t_13*ucu_h_4_t_15
+        ucu_end_p1_in_turn4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_17 + ucu_h_4_t_11*ucu_h_4_t_14
+        ucu_h_4_t_18 = (
+        ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x + ucu_end_p1_in_turn4_y*ucu_end_p1_in_turn4_y
+        )
+        ucu_h_4_t_19 = ucu_branch_4*sqrt(ucu_h_4_t_18)
+        inv_ucu_h_4_t_19 = 1.0/ucu_h_4_t_19
+        ucu_e_2_in_axes4_y = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_x
+        ucu_e_2_in_axes4_x = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_y
+        ucu_h_4_in_axes2_y = (
+        ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y - ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z
+        )
+        # (ucu-J_4) inertia tensor of link 4 about the connection point
+        ucu_J_4_in_axes2_xz = (
+        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x + ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y
+        )
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_c_2*ucu_c_4
-        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
-        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
-        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
-        ucu_w_1_t = ucu_s_2*ucu_s_4
-        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
-        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
-        axis_y_ucu_axes4_in_base_x = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
-            ucu_base_frame_xz*ucu_v_1_t_2
+        ucu_e_1_in_axes4_x = ucu_e_2_in_axes4_y*ucu_h_4_t_11
+        ucu_e_1_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_h_4_t_11
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_10
+        ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_h_4_t_10
+        ucu_v_1_in_axes2_y = (
+        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x - ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y
         )
-        axis_y_ucu_axes4_in_base_y = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
-            ucu_base_frame_yz*ucu_v_1_t_2
+        ucu_v_1_in_axes2_z = (
+        ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x + ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y
         )
-        axis_y_ucu_axes4_in_base_z = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
-            ucu_base_frame_zz*ucu_v_1_t_2
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_14 - ucu_h_4_t_11*ucu_h_4_t_17
+        axis_z_ucu_axes4_x = inv_ucu_h_4_t_10*ucu_h_4_t
+        axis_z_ucu_axes4_y = inv_ucu_h_4_t_10*ucu_h_4_t_2
+        axis_z_ucu_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_3
+        ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x
+        ucu_n_m1_t_2 = ucu_e_2_in_axes4_y*ucu_h_4_t_15 - ucu_h_4_t_16*ucu_n_m1_t
+        ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_16 + ucu_h_4_t_15*ucu_n_m1_t
+        axis_y_ucu_axes4_x = (
+        ucu_base_frame_xx*ucu_n_m1_t_2 + ucu_base_frame_xy*ucu_n_m1_t_3 +
+            ucu_base_frame_xz*ucu_e_1_in_axes4_y
+        )
+        axis_y_ucu_axes4_y = (
+        ucu_base_frame_yx*ucu_n_m1_t_2 + ucu_base_frame_yy*ucu_n_m1_t_3 +
+            ucu_base_frame_yz*ucu_e_1_in_axes4_y
+        )
+        axis_y_ucu_axes4_z = (
+        ucu_base_frame_zx*ucu_n_m1_t_2 + ucu_base_frame_zy*ucu_n_m1_t_3 +
+            ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
         axis_x_ucu_axes4_x = (
-        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
+        axis_y_ucu_axes4_y*axis_z_ucu_axes4_z - axis_y_ucu_axes4_z*axis_z_ucu_axes4_y
         )
         axis_x_ucu_axes4_y = (
-        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
+        axis_y_ucu_axes4_z*axis_z_ucu_axes4_x - axis_y_ucu_axes4_x*axis_z_ucu_axes4_z
         )
         axis_x_ucu_axes4_z = (
-        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
+        axis_y_ucu_axes4_x*axis_z_ucu_axes4_y - axis_y_ucu_axes4_y*axis_z_ucu_axes4_x
         )
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
-        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
+        ucu_end_p1_in_axes4_x = (
+        ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_y + ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x
+        )
+        ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_n_m1_x = (
+        axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x
+        )
+        ucu_n_m1_y = (
+        axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x
+        )
+        ucu_n_m1_z = (
+        axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x - axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x
+        )
         # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
-        # (ucu-w_1) force part of reciprocal wrench 1
-        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
-        ucu_w_1_t_3 = inv_ucu_v_1_r0_y*ucu_s_4
-        ucu_w_1_t_4 = inv_ucu_v_1_r0_y*ucu_c_4
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x
+        ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y
         # (ucu-w_2) force part of reciprocal wrench 2
-        ucu_w_2_t = inv_ucu_root_2*inv_ucu_v_1_r0_y*ucu_v_1_r0_x
-        ucu__r1_x = inv_ucu_root_2*ucu_c_4 - ucu_s_4*ucu_w_2_t
-        ucu__r1_y = -inv_ucu_root_2*ucu_s_4 - ucu_c_4*ucu_w_2_t
+        ucu_w_2_t = inv_ucu_h_4_t_10*inv_ucu_v_1_in_axes2_z*ucu_v_1_in_axes2_y
+        ucu_w_2_in_axes4_x = inv_ucu_h_4_t_10*ucu_e_2_in_axes4_y - ucu_e_2_in_axes4_x*ucu_w_2_t
+        ucu_w_2_in_axes4_y = -inv_ucu_h_4_t_10*ucu_e_2_in_axes4_x - ucu_e_2_in_axes4_y*ucu_w_2_t
         # (ucu-w_4) force part of reciprocal wrench 4
-        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
-        ucu_w_4_t = inv_ucu_end_p1_r5_x*inv_ucu_root_2*ucu_n_m1_t
-        ucu_w_4_t_2 = inv_ucu_v_1_r0_y*(inv_ucu_end_p1_r5_x*ucu_w_1_t_2 + ucu_v_1_r0_x*ucu_w_4_t)
-        ucu__r1_x_2 = ucu_c_4*ucu_w_4_t - ucu_s_4*ucu_w_4_t_2
-        ucu__r1_y_2 = -ucu_c_4*ucu_w_4_t_2 - ucu_s_4*ucu_w_4_t
-        # (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
-        ucu_d_alpha_4_zy = ucu__r1_y_2 + ucu_s_2*ucu_w_1_t_4
-        # (ucu-L_c_4) moment about joint 4 that accelerates joint 4, per unit
-        ucu_L_c_4_r0_y = ucu_J_4_xy*ucu_s_4 + ucu_J_4_xz*ucu_c_4
-        # (ucu-D_1_4) inertia of joint 4 along joint 1
-        ucu_D_1_4 = ucu_J_4_xx*ucu_s_2 + ucu_J_4_xz*ucu_v_1_t_2 - ucu_J_4_xy*ucu_v_1_t
-        # (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        ucu_d_Gamma_4_t = inv_ucu_end_p1_r5_x*ucu_J_4_xx
-        ucu_d_Gamma_4_t_2 = inv_ucu_root_2*(ucu_L_c_4_r0_y + ucu_d_Gamma_4_t*ucu_n_m1_t)
-        ucu_d_Gamma_4_t_3 = (
-        inv_ucu_v_1_r0_y*(ucu_d_Gamma_4_t*ucu_w_1_t_2 + ucu_d_Gamma_4_t_2*ucu_v_1_r0_x -
-            ucu_D_1_4)
+        ucu_w_4_t = (
+        ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x - ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x
         )
-        ucu_d_Gamma_4_x = ucu_c_4*ucu_d_Gamma_4_t_2 - ucu_h_4_z - ucu_d_Gamma_4_t_3*ucu_s_4
-        ucu_d_Gamma_4_y = ucu_h_4_y - ucu_c_4*ucu_d_Gamma_4_t_3 - ucu_d_Gamma_4_t_2*ucu_s_4
-        # (ucu-J_4) inertia tensor of link 4 about the connection point
-        ucu_J_4_t = ucu_J_4_yz*ucu_s_4
-        ucu__x = ucu_J_4_yy*ucu_c_4 - ucu_J_4_t
-        ucu_J_4_t_2 = ucu_J_4_yz*ucu_c_4
-        ucu__x_2 = ucu_J_4_t_2 - ucu_J_4_zz*ucu_s_4
-        # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        ucu_Jc_2_xy = ucu_J_4_xy*ucu_c_4 - ucu_J_2_xz - ucu_J_4_xz*ucu_s_4
-        # (ucu-L_c_2) moment about joint 2 that accelerates joint 2, per unit
-        ucu_L_c_2_r0_y = (
-        ucu_s_2*(ucu_J_2_xy + ucu_L_c_4_r0_y) - ucu_c_2*(ucu__x*ucu_s_4 + ucu__x_2*ucu_c_4 -
-            ucu_J_2_yz)
+        ucu_w_4_t_2 = -1.0/ucu_end_p1_in_axes4_x
+        ucu_w_4_t_3 = -inv_ucu_h_4_t_10*ucu_n_m1_in_axes2_z*ucu_w_4_t_2
+        ucu_w_4_t_4 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_v_1_in_axes2_y*ucu_w_4_t_3 - ucu_w_4_t*ucu_w_4_t_2)
         )
-        # (ucu-h_4) first moment of link 4 about the connection point
-        ucu_h_4_r1_x = ucu_c_4*ucu_h_4_y - ucu_h_4_z*ucu_s_4
-        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        ucu_d_Gamma_2_t = inv_ucu_end_p1_r5_x*ucu_L_c_4_r0_y
-        ucu_d_Gamma_2_t_2 = (
-        inv_ucu_root_2*(ucu_J_2_yy + ucu_c_4*(ucu_J_4_t + ucu_J_4_zz*ucu_c_4) +
-            ucu_d_Gamma_2_t*ucu_n_m1_t + ucu_s_4*(ucu_J_4_t_2 + ucu_J_4_yy*ucu_s_4))
-        )
-        ucu_d_Gamma_2_t_3 = (
-        inv_ucu_v_1_r0_y*(ucu_d_Gamma_2_t*ucu_w_1_t_2 + ucu_d_Gamma_2_t_2*ucu_v_1_r0_x -
-            ucu_L_c_2_r0_y)
-        )
-        ucu_d_Gamma_2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_x
-        # (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        ucu_d_Gamma_1_t = inv_ucu_end_p1_r5_x*ucu_D_1_4
-        ucu_d_Gamma_1_t_2 = inv_ucu_root_2*(ucu_L_c_2_r0_y + ucu_d_Gamma_1_t*ucu_n_m1_t)
-        ucu_d_Gamma_1_t_3 = (
-        ucu_c_2*(ucu_Jc_2_xy*ucu_s_2 - ucu_c_2*(ucu_J_2_zz + ucu__x*ucu_c_4 - ucu__x_2*ucu_s_4)) +
-            ucu_d_Gamma_1_t*ucu_w_1_t_2 + ucu_d_Gamma_1_t_2*ucu_v_1_r0_x -
-            ucu_s_2*(ucu_Jc_2_xx*ucu_s_2 - ucu_Jc_2_xy*ucu_c_2)
-        )
-        ucu_d_Gamma_1_t_4 = ucu_c_2*ucu_d_Gamma_1_t_2
-        ucu_d_Gamma_1_x = (
-        ucu_c_2*ucu_h_4_x + ucu_h_4_r1_x*ucu_s_2 - inv_ucu_v_1_r0_y*ucu_d_Gamma_1_t_3
-        )
-        ucu_d_Gamma_1_y = ucu_c_4*ucu_h_4_z + ucu_h_4_y*ucu_s_4 - ucu_d_Gamma_1_t_2*ucu_s_2
-        ucu_d_Gamma_1_r1_x = -ucu_c_2*ucu_d_Gamma_1_y - ucu_d_Gamma_1_t_4*ucu_s_2
-        ucu_d_Gamma_1_r1_y = ucu_c_2*ucu_d_Gamma_1_t_4 - ucu_d_Gamma_1_y*ucu_s_2
-        ucu_d_Gamma_1_r3_y = ucu_c_4*ucu_d_Gamma_1_x - ucu_d_Gamma_1_r1_y*ucu_s_4
-        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        ucu_d_Gamma_2_r1_y = -ucu_c_4*ucu_d_Gamma_2_t_3 - ucu_d_Gamma_2_y*ucu_s_4
-        # (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_d_G_xz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_3 - ucu__r1_x*ucu_h_4_r1_x
-        ucu_d_G_yz = ucu_d_Gamma_1_r1_x*ucu_w_1_t_4 - ucu__r1_y*ucu_h_4_r1_x
-        # (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ucu_d_c_xx = (
-        ucu_h_4_z*(ucu__r1_x_2 + ucu_s_2*ucu_w_1_t_3) - ucu__r1_x*(ucu_c_4*ucu_d_Gamma_2_y -
-            ucu_d_Gamma_2_t_3*ucu_s_4) - ucu__r1_x_2*ucu_d_Gamma_4_x -
-            ucu_h_4_x*(ucu__r1_x*ucu_c_4 + ucu_v_1_t_2*ucu_w_1_t_3) -
-            ucu_w_1_t_3*(ucu_c_4*ucu_d_Gamma_1_r1_y + ucu_d_Gamma_1_x*ucu_s_4)
-        )
-        ucu_d_c_xy = (
-        ucu_d_alpha_4_zy*ucu_h_4_z - ucu__r1_x*ucu_d_Gamma_2_r1_y - ucu__r1_x_2*ucu_d_Gamma_4_y -
-            ucu_d_Gamma_1_r3_y*ucu_w_1_t_3 - ucu_h_4_x*(ucu__r1_y*ucu_c_4 +
-            ucu_v_1_t_2*ucu_w_1_t_4)
-        )
-        ucu_d_c_yy = (
-        ucu_h_4_x*(ucu__r1_y*ucu_s_4 - ucu_v_1_t*ucu_w_1_t_4) - ucu__r1_y*ucu_d_Gamma_2_r1_y -
-            ucu__r1_y_2*ucu_d_Gamma_4_y - ucu_d_Gamma_1_r3_y*ucu_w_1_t_4 -
-            ucu_d_alpha_4_zy*ucu_h_4_y
-        )
-        # (ucu-Q) inertia of the leg at the connection point, without the mass gathered there
-        ucu_Q_t = 0.5*ucu_d_c_xx
-        ucu_Q_t_2 = 0.5*ucu_d_c_yy
-        ucu_Q_t_3 = (
-        axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_in_base_x*ucu_d_c_xy -
-            ucu_axis_z_x*ucu_d_G_xz
-        )
-        ucu_Q_t_4 = (
-        axis_x_ucu_axes4_y*ucu_Q_t + axis_y_ucu_axes4_in_base_y*ucu_d_c_xy -
-            ucu_axis_z_y*ucu_d_G_xz
-        )
-        ucu_Q_t_5 = (
-        axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_in_base_z*ucu_d_c_xy -
-            ucu_axis_z_z*ucu_d_G_xz
-        )
-        ucu_Q_t_6 = axis_y_ucu_axes4_in_base_x*ucu_Q_t_2 - ucu_axis_z_x*ucu_d_G_yz
-        ucu_Q_t_7 = axis_y_ucu_axes4_in_base_y*ucu_Q_t_2 - ucu_axis_z_y*ucu_d_G_yz
-        ucu_Q_t_8 = axis_y_ucu_axes4_in_base_z*ucu_Q_t_2 - ucu_axis_z_z*ucu_d_G_yz
-        ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 + axis_y_ucu_axes4_in_base_x*ucu_Q_t_6
-        ucu_Q_t_10 = 2.0*ucu_Q_t_9
-        ucu_Q_t_11 = (
-        axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_x_ucu_axes4_y*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_7 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_6
-        )
-        ucu_Q_t_12 = (
-        axis_x_ucu_axes4_x*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_3 +
-            axis_y_ucu_axes4_in_base_x*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_6
-        )
-        ucu_Q_t_13 = axis_x_ucu_axes4_y*ucu_Q_t_4 + axis_y_ucu_axes4_in_base_y*ucu_Q_t_7
-        ucu_Q_t_14 = 2.0*ucu_Q_t_13
-        ucu_Q_t_15 = (
-        axis_x_ucu_axes4_y*ucu_Q_t_5 + axis_x_ucu_axes4_z*ucu_Q_t_4 +
-            axis_y_ucu_axes4_in_base_y*ucu_Q_t_8 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_7
-        )
-        ucu_Q_t_16 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_in_base_z*ucu_Q_t_8
-        ucu_Q_t_17 = 2.0*ucu_Q_t_16
+        ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_3 - ucu_e_2_in_axes4_x*ucu_w_4_t_4
+        ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_3 - ucu_e_2_in_axes4_y*ucu_w_4_t_4
         # (ucu-o_4) moment part of reciprocal wrench 4
-        ucu_o_4_x = inv_ucu_end_p1_r5_x*ucu_end_p1_r3_x
+        ucu_o_4_in_axes4_x = ucu_n_m1_in_axes4_x*ucu_w_4_t_2
+        # (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
+        ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y + ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y
+        # (ucu-D_1_4) inertia of joint 4 along joint 1
+        ucu_D_1_4 = (
+        ucu_J_4_in_spec4_xx*ucu_e_1_in_axes4_z + ucu_J_4_in_spec4_xy*ucu_e_1_in_axes4_x +
+            ucu_J_4_in_spec4_xz*ucu_e_1_in_axes4_y
+        )
+        # (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x
+        ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t
+        ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y
+        ucu_Jc_2_t_4 = ucu_Jc_2_t_3 - ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x
+        ucu_Jc_2_in_axes2_xy = (
+        ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_xz -
+            ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x
+        )
+        ucu_Jc_2_in_axes1_xz = (
+        ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy + ucu_J_4_in_axes2_xz) +
+            ucu_h_4_t_11*(ucu_Jc_2_t_2*ucu_e_2_in_axes4_x + ucu_Jc_2_t_4*ucu_e_2_in_axes4_y -
+            ucu_J_2_in_spec2_yz)
+        )
         # (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        ucu_dalpha_Gamma_4_t = ucu_J_4_xx*ucu_o_4_x
+        ucu_dalpha_Gamma_4_t = -ucu_J_4_in_spec4_xx*ucu_o_4_in_axes4_x
+        # (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        ucu_d_Gamma_4_t = ucu_J_4_in_spec4_xx*ucu_w_4_t_2
+        ucu_d_Gamma_4_t_2 = (
+        inv_ucu_h_4_t_10*(ucu_J_4_in_axes2_xz - ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z)
+        )
+        ucu_d_Gamma_4_t_3 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_4_t_2*ucu_v_1_in_axes2_y - ucu_D_1_4 -
+            ucu_d_Gamma_4_t*ucu_w_4_t)
+        )
+        ucu_d_Gamma_4_in_axes4_x = (
+        ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y - ucu_h_4_in_spec4_z -
+            ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x
+        )
+        ucu_d_Gamma_4_in_axes4_y = (
+        ucu_h_4_in_spec4_y - ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x -
+            ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y
+        )
         # (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        ucu_dalpha_Gamma_2_t = ucu_L_c_4_r0_y*ucu_o_4_x
+        ucu_dalpha_Gamma_2_in_axes4_x = ucu_J_4_in_axes2_xz*ucu_o_4_in_axes4_x
+        # (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        ucu_d_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_w_4_t_2
+        ucu_d_Gamma_2_t_2 = (
+        inv_ucu_h_4_t_10*(ucu_J_2_in_spec2_yy + ucu_e_2_in_axes4_x*(ucu_Jc_2_t_3 +
+            ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) + ucu_e_2_in_axes4_y*(ucu_Jc_2_t +
+            ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y) - ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z)
+        )
+        ucu_d_Gamma_2_in_axes2_z = (
+        -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t_2*ucu_v_1_in_axes2_y - ucu_Jc_2_in_axes1_xz -
+            ucu_d_Gamma_2_t*ucu_w_4_t)
+        )
+        ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x
+        ucu_d_Gamma_2_in_axes4_y = (
+        ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y - ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x
+        )
         # (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_x
-        # (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ucu_dalpha_c_xx = (
-        ucu__r1_x*ucu_dalpha_Gamma_2_t + ucu__r1_x_2*ucu_dalpha_Gamma_4_t +
-            ucu_dalpha_Gamma_1_t*ucu_w_1_t_3 - ucu_h_4_z*ucu_o_4_x
+        ucu_dalpha_Gamma_1_in_axes4_x = ucu_D_1_4*ucu_o_4_in_axes4_x
+        # (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        ucu_d_Gamma_1_t = ucu_D_1_4*ucu_w_4_t_2
+        ucu_d_Gamma_1_t_2 = (
+        inv_ucu_h_4_t_10*(ucu_Jc_2_in_axes1_xz - ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z)
         )
-        ucu_dalpha_c_xz = (
-        ucu_h_4_z - ucu_D_1_4*ucu_w_1_t_3 - ucu_J_4_xx*ucu__r1_x_2 - ucu_L_c_4_r0_y*ucu__r1_x
+        ucu_d_Gamma_1_t_3 = (
+        ucu_d_Gamma_1_t_2*ucu_v_1_in_axes2_y - ucu_d_Gamma_1_t*ucu_w_4_t -
+            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z +
+            ucu_Jc_2_in_axes2_xy*ucu_h_4_t_11) -
+            ucu_h_4_t_11*(ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z +
+            ucu_h_4_t_11*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_2*ucu_e_2_in_axes4_y -
+            ucu_Jc_2_t_4*ucu_e_2_in_axes4_x))
         )
-        ucu_dalpha_c_yx = (
-        ucu__r1_y*ucu_dalpha_Gamma_2_t + ucu__r1_y_2*ucu_dalpha_Gamma_4_t +
-            ucu_dalpha_Gamma_1_t*ucu_w_1_t_4 + ucu_h_4_y*ucu_o_4_x
+        ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_11
+        ucu_d_Gamma_1_in_axes1_x = (
+        ucu_e_1_in_axes4_z*ucu_h_4_in_axes2_y - inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 -
+            ucu_h_4_in_spec4_x*ucu_h_4_t_11
         )
-        ucu_dalpha_c_yz = (
-        -ucu_h_4_y - ucu_D_1_4*ucu_w_1_t_4 - ucu_J_4_xx*ucu__r1_y_2 - ucu_L_c_4_r0_y*ucu__r1_y
+        ucu_d_Gamma_1_in_axes1_y = (
+        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z -
+            ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z
         )
-        ucu_dalpha_c_in_base_x = (
-        axis_x_ucu_axes4_x*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yx
+        ucu_d_Gamma_1_in_axes4_z = (
+        ucu_d_Gamma_1_in_axes1_y*ucu_h_4_t_11 + ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z
         )
-        ucu_dalpha_c_in_base_y = (
-        axis_x_ucu_axes4_y*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yx
+        ucu_d_Gamma_1_t_4 = (
+        ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_11 - ucu_d_Gamma_1_in_axes1_y*ucu_e_1_in_axes4_z
         )
-        ucu_dalpha_c_in_base_z = (
-        axis_x_ucu_axes4_z*ucu_dalpha_c_xx + axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yx
+        ucu_d_Gamma_1_in_axes4_y = (
+        ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_y - ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x
         )
-        ucu_dalpha_c_in_base_x_2 = (
-        axis_x_ucu_axes4_x*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_x*ucu_dalpha_c_yz
+        # (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_d_G_in_axes4_xz = (
+        ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x - ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_x
         )
-        ucu_dalpha_c_in_base_y_2 = (
-        axis_x_ucu_axes4_y*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_y*ucu_dalpha_c_yz
-        )
-        ucu_dalpha_c_in_base_z_2 = (
-        axis_x_ucu_axes4_z*ucu_dalpha_c_xz + axis_y_ucu_axes4_in_base_z*ucu_dalpha_c_yz
-        )
-        # (M_ta) coupling block of M
-        ucu_M_ta_t = ucu_Q_t_11*ucu_q_in_base_z
-        ucu_M_ta_t_2 = ucu_Q_t_12*ucu_q_in_base_y
-        ucu_M_ta_t_3 = ucu_Q_t_15*ucu_q_in_base_x
-        ucu_M_ta_t_4 = (
-        ucu_M_ta_t - ucu_M_ta_t_2 - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_x -
-            ucu_axis_z_x*ucu_dalpha_c_in_base_x_2
-        )
-        ucu_M_ta_t_5 = (
-        axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_x + ucu_Q_t_10*ucu_q_in_base_z +
-            ucu_axis_z_y*ucu_dalpha_c_in_base_x_2 - ucu_Q_t_12*ucu_q_in_base_x
-        )
-        ucu_M_ta_t_6 = (
-        ucu_Q_t_10*ucu_q_in_base_y - axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_x -
-            ucu_Q_t_11*ucu_q_in_base_x - ucu_axis_z_z*ucu_dalpha_c_in_base_x_2
-        )
-        ucu_M_ta_t_7 = (
-        ucu_Q_t_14*ucu_q_in_base_z - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_y -
-            ucu_Q_t_15*ucu_q_in_base_y - ucu_axis_z_x*ucu_dalpha_c_in_base_y_2
-        )
-        ucu_M_ta_t_8 = (
-        ucu_M_ta_t + axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_y +
-            ucu_axis_z_y*ucu_dalpha_c_in_base_y_2 - ucu_M_ta_t_3
-        )
-        ucu_M_ta_t_9 = (
-        ucu_Q_t_11*ucu_q_in_base_y - axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_y -
-            ucu_Q_t_14*ucu_q_in_base_x - ucu_axis_z_z*ucu_dalpha_c_in_base_y_2
-        )
-        ucu_M_ta_t_10 = (
-        ucu_Q_t_15*ucu_q_in_base_z - axis_x_ucu_axes4_x*ucu_dalpha_c_in_base_z -
-            ucu_Q_t_17*ucu_q_in_base_y - ucu_axis_z_x*ucu_dalpha_c_in_base_z_2
-        )
-        ucu_M_ta_t_11 = (
-        axis_x_ucu_axes4_y*ucu_dalpha_c_in_base_z + ucu_Q_t_12*ucu_q_in_base_z +
-            ucu_axis_z_y*ucu_dalpha_c_in_base_z_2 - ucu_Q_t_17*ucu_q_in_base_x
-        )
-        ucu_M_ta_t_12 = (
-        ucu_M_ta_t_3 + axis_x_ucu_axes4_z*ucu_dalpha_c_in_base_z +
-            ucu_axis_z_z*ucu_dalpha_c_in_base_z_2 - ucu_M_ta_t_2
+        ucu_d_G_in_axes4_yz = (
+        ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_y - ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_y
         )
         # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        ucu_dalpha_G_m1_t = inv_ucu_end_p1_r5_x*ucu_dalpha_Gamma_4_t
-        # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        ucu_d_G_m1_t = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_x
-        ucu_d_G_m1_t_2 = inv_ucu_end_p1_r5_x*ucu_d_Gamma_4_y
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_in_base_x = axis_x_ucu_axes4_x*ucu_end_p1_r3_x - ucu_axis_z_x*ucu_end_p1_r5_x
-        ucu_n_m1_in_base_y = axis_x_ucu_axes4_y*ucu_end_p1_r3_x - ucu_axis_z_y*ucu_end_p1_r5_x
-        ucu_n_m1_in_base_z = axis_x_ucu_axes4_z*ucu_end_p1_r3_x - ucu_axis_z_z*ucu_end_p1_r5_x
-        # (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        ucu_dalpha_G_m1_in_base_y = (
-        axis_x_ucu_axes4_y*ucu_dalpha_G_m1_t - ucu_axis_z_y*ucu_d_Gamma_4_t
+        ucu_dalpha_G_m1_in_axes4_x = -ucu_dalpha_Gamma_4_t*ucu_w_4_t_2
+        ucu_dalpha_G_m1_y = (
+        axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x + axis_z_ucu_axes4_y*ucu_d_Gamma_4_t
         )
-        ucu_dalpha_G_m1_in_base_z = (
-        axis_x_ucu_axes4_z*ucu_dalpha_G_m1_t - ucu_axis_z_z*ucu_d_Gamma_4_t
+        ucu_dalpha_G_m1_z = (
+        axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x + axis_z_ucu_axes4_z*ucu_d_Gamma_4_t
         )
         # (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        ucu_d_G_m1_in_base_x = (
-        -axis_x_ucu_axes4_x*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_x*ucu_d_G_m1_t_2
+        ucu_d_G_m1_in_axes4_x = ucu_d_Gamma_4_in_axes4_x*ucu_w_4_t_2
+        ucu_d_G_m1_in_axes4_y = ucu_d_Gamma_4_in_axes4_y*ucu_w_4_t_2
+        ucu_d_G_m1_x = (
+        axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x + axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y
         )
-        ucu_d_G_m1_in_base_y = (
-        -axis_x_ucu_axes4_y*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_y*ucu_d_G_m1_t_2
+        ucu_d_G_m1_y = (
+        axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x + axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y
         )
-        ucu_d_G_m1_in_base_z = (
-        -axis_x_ucu_axes4_z*ucu_d_G_m1_t - axis_y_ucu_axes4_in_base_z*ucu_d_G_m1_t_2
+        ucu_d_G_m1_z = (
+        axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x + axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y
         )
         # (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_d_G_m_xx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_x
-        ucu_d_G_m_xy = ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_x
-        ucu_d_G_m_xz = ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_x
-        ucu_d_G_m_yx = ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_y
+        ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x
+        ucu_d_G_m_xy = ucu_d_G_m1_y*ucu_n_m1_x
+        ucu_d_G_m_xz = ucu_d_G_m1_z*ucu_n_m1_x
+        ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y
+        # (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_dalpha_c_in_axes4_xx = (
+        ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x + ucu_h_4_in_spec4_z*ucu_o_4_in_axes4_x -
+            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_x -
+            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_x
+        )
+        ucu_dalpha_c_in_axes4_xz = (
+        ucu_h_4_in_spec4_z - ucu_D_1_4*ucu_w_1_in_axes4_x - ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_x
+            - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_x
+        )
+        ucu_dalpha_c_in_axes4_yx = (
+        ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y - ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_y
+            - ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_y -
+            ucu_h_4_in_spec4_y*ucu_o_4_in_axes4_x
+        )
+        ucu_dalpha_c_in_axes4_yz = (
+        -ucu_h_4_in_spec4_y - ucu_D_1_4*ucu_w_1_in_axes4_y -
+            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_y - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_y
+        )
+        # (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ucu_d_c_in_axes4_xx = (
+        ucu_h_4_in_spec4_z*(ucu_w_4_in_axes4_x + ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x) -
+            ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
+            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
+            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
+            ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_x +
+            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
+            ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
+            ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x)
+        )
+        ucu_d_c_in_axes4_xy = (
+        ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x
+            - ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
+            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
+            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
+            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y)
+        )
+        ucu_d_c_in_axes4_yy = (
+        ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_x*ucu_w_1_in_axes4_y +
+            ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
+            ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
+            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
+            ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y
+        )
+        # (ucu-Q) inertia of the leg at the connection point, without the mass gathered there
+        ucu_Q_t = 0.5*ucu_d_c_in_axes4_xx
+        ucu_Q_t_2 = 0.5*ucu_d_c_in_axes4_yy
+        ucu_Q_t_3 = (
+        axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy -
+            axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz
+        )
+        ucu_Q_t_4 = (
+        axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t -
+            axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy
+        )
+        ucu_Q_t_5 = (
+        axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy -
+            axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz
+        )
+        ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz - axis_y_ucu_axes4_x*ucu_Q_t_2
+        ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 - axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz
+        ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz
+        ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6
+        ucu_Q_xx = -2.0*ucu_Q_t_9
+        ucu_Q_xy = (
+        axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 - axis_x_ucu_axes4_y*ucu_Q_t_3
+            - axis_y_ucu_axes4_x*ucu_Q_t_7
+        )
+        ucu_Q_xz = (
+        axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 - axis_x_ucu_axes4_z*ucu_Q_t_3
+            - axis_y_ucu_axes4_x*ucu_Q_t_8
+        )
+        ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4
+        ucu_Q_yy = -2.0*ucu_Q_t_10
+        ucu_Q_yz = (
+        axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 - axis_y_ucu_axes4_y*ucu_Q_t_8
+            - axis_y_ucu_axes4_z*ucu_Q_t_7
+        )
+        ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8
+        ucu_Q_zz = -2.0*ucu_Q_t_11
+        # (M_ta) coupling block of M
+        ucu_M_ta_t = (
+        axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx + axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx
+        )
+        ucu_M_ta_t_2 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx + axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx
+        )
+        ucu_M_ta_t_3 = (
+        axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx + axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx
+        )
+        ucu_M_ta_t_4 = (
+        axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz + axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz
+        )
+        ucu_M_ta_t_5 = (
+        axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz + axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz
+        )
+        ucu_M_ta_t_6 = (
+        axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz + axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz
+        )
+        ucu_M_ta_t_7 = -ucu_Q_xy*ucu_q_z
+        ucu_M_ta_t_8 = ucu_Q_xz*ucu_q_y
+        ucu_M_ta_t_9 = ucu_Q_yz*ucu_q_x
+        ucu_M_ta_t_10 = (
+        ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
+            axis_z_ucu_axes4_x*ucu_M_ta_t_4
+        )
+        ucu_M_ta_t_11 = (
+        ucu_Q_xx*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t - axis_z_ucu_axes4_y*ucu_M_ta_t_4 -
+            ucu_Q_xz*ucu_q_x
+        )
+        ucu_M_ta_t_12 = (
+        ucu_Q_xy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t - axis_z_ucu_axes4_z*ucu_M_ta_t_4 -
+            ucu_Q_xx*ucu_q_y
+        )
+        ucu_M_ta_t_13 = (
+        ucu_Q_yz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 - axis_z_ucu_axes4_x*ucu_M_ta_t_5 -
+            ucu_Q_yy*ucu_q_z
+        )
+        ucu_M_ta_t_14 = (
+        ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
+            axis_z_ucu_axes4_y*ucu_M_ta_t_5
+        )
+        ucu_M_ta_t_15 = (
+        ucu_Q_yy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 - axis_z_ucu_axes4_z*ucu_M_ta_t_5 -
+            ucu_Q_xy*ucu_q_y
+        )
+        ucu_M_ta_t_16 = (
+        ucu_Q_zz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 - axis_z_ucu_axes4_x*ucu_M_ta_t_6 -
+            ucu_Q_yz*ucu_q_z
+        )
+        ucu_M_ta_t_17 = (
+        ucu_Q_xz*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 - axis_z_ucu_axes4_y*ucu_M_ta_t_6 -
+            ucu_Q_zz*ucu_q_x
+        )
+        ucu_M_ta_t_18 = (
+        ucu_M_ta_t_9 - ucu_M_ta_t_8 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
+            axis_z_ucu_axes4_z*ucu_M_ta_t_6
+        )
         # (M_aa) rotational block of M
         ucu_M_aa_t = (
-        ucu_M_ta_t_7*ucu_q_in_base_z + ucu_d_G_m_xy*ucu_q_in_base_z -
-            ucu_M_ta_t_10*ucu_q_in_base_y - ucu_d_G_m_xz*ucu_q_in_base_y -
-            ucu_n_m1_in_base_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_t -
-            ucu_axis_z_x*ucu_d_Gamma_4_t)
+        ucu_M_ta_t_16*ucu_q_y + ucu_d_G_m_xz*ucu_q_y +
+            ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x +
+            axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*ucu_q_z - ucu_d_G_m_xy*ucu_q_z
         )
         ucu_M_aa_t_2 = (
-        ucu_M_ta_t_8*ucu_q_in_base_z + ucu_d_G_m_xx*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_x - ucu_M_ta_t_11*ucu_q_in_base_y -
-            ucu_d_G_m_xz*ucu_q_in_base_x
+        ucu_M_ta_t_14*ucu_q_z + ucu_M_ta_t_17*ucu_q_y + ucu_d_G_m_xx*ucu_q_z +
+            ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*ucu_q_x
         )
         ucu_M_aa_t_3 = (
-        ucu_M_ta_t_12*ucu_q_in_base_y + ucu_M_ta_t_9*ucu_q_in_base_z +
-            ucu_d_G_m_xx*ucu_q_in_base_y - ucu_d_G_m_xy*ucu_q_in_base_x -
-            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_x
+        ucu_M_ta_t_18*ucu_q_y + ucu_d_G_m_xy*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_x -
+            ucu_M_ta_t_15*ucu_q_z - ucu_d_G_m_xx*ucu_q_y
         )
         ucu_M_aa_t_4 = (
-        ucu_M_ta_t_11*ucu_q_in_base_x + ucu_d_G_m_yx*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_y*ucu_n_m1_in_base_y - ucu_M_ta_t_5*ucu_q_in_base_z -
-            ucu_d_G_m1_in_base_z*ucu_n_m1_in_base_y*ucu_q_in_base_x
+        ucu_M_ta_t_11*ucu_q_z + ucu_d_G_m_yx*ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_y -
+            ucu_M_ta_t_17*ucu_q_x - ucu_d_G_m1_z*ucu_n_m1_y*ucu_q_x
         )
         ucu_M_aa_t_5 = (
-        ucu_M_ta_t_12*ucu_q_in_base_x + ucu_M_ta_t_6*ucu_q_in_base_z +
-            ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_y +
-            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_y*ucu_q_in_base_x - ucu_d_G_m_yx*ucu_q_in_base_y
+        ucu_M_ta_t_12*ucu_q_z + ucu_dalpha_G_m1_z*ucu_n_m1_y + ucu_d_G_m1_y*ucu_n_m1_y*ucu_q_x -
+            ucu_M_ta_t_18*ucu_q_x - ucu_d_G_m_yx*ucu_q_y
         )
         ucu_M_aa_t_6 = (
-        ucu_M_ta_t_6*ucu_q_in_base_y + ucu_d_G_m1_in_base_x*ucu_n_m1_in_base_z*ucu_q_in_base_y -
-            ucu_M_ta_t_9*ucu_q_in_base_x - ucu_dalpha_G_m1_in_base_z*ucu_n_m1_in_base_z -
-            ucu_d_G_m1_in_base_y*ucu_n_m1_in_base_z*ucu_q_in_base_x
+        ucu_M_ta_t_15*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_z + ucu_d_G_m1_y*ucu_n_m1_z*ucu_q_x -
+            ucu_M_ta_t_12*ucu_q_y - ucu_d_G_m1_x*ucu_n_m1_z*ucu_q_y
         )
         ok = (
-        ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
-            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
+        ok & m.every(leg, (abs(ucu_h_4_t_6) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ucu_h_4_t_9) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_h_4_t_18)
+            > _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_h_4_t_10) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ucu_Q_t_10, ucu_Q_t_11, ucu_Q_t_12, ucu_Q_t_14, ucu_Q_t_15, ucu_Q_t_17, ucu_M_ta_t_4,
-            ucu_M_ta_t_5, ucu_M_ta_t_6, ucu_M_ta_t_7, ucu_M_ta_t_8, ucu_M_ta_t_9,
-            ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12, ucu_M_aa_t, ucu_M_aa_t_2,
+        ucu_Q_xx, ucu_Q_xy, ucu_Q_xz, ucu_Q_yy, ucu_Q_yz, ucu_Q_zz, ucu_M_ta_t_10,
+            ucu_M_ta_t_11, ucu_M_ta_t_12, ucu_M_ta_t_13, ucu_M_ta_t_14, ucu_M_ta_t_15,
+            ucu_M_ta_t_16, ucu_M_ta_t_17, ucu_M_ta_t_18, ucu_M_aa_t, ucu_M_aa_t_2,
             ucu_M_aa_t_3, ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6,
         ))
     (
-    total_ucu_xx, total_ucu_xy, total_ucu_xz, total_ucu_yy, total_ucu_yz, total_ucu_zz,
-        total_ucu_xx_2, total_ucu_xy_2, total_ucu_xz_2, total_ucu_yx, total_ucu_yy_2,
-        total_ucu_yz_2, total_ucu_zx, total_ucu_zy, total_ucu_zz_2, total_ucu_xx_3,
-        total_ucu_xy_3, total_ucu_xz_3, total_ucu_yy_3, total_ucu_yz_3, total_ucu_zz_3,
+    M_tt_ucu_xx, M_tt_xy, M_tt_xz, M_tt_ucu_yy, M_tt_yz, M_tt_ucu_zz, M_ta_xx, M_ta_ucu_xy,
+        M_ta_ucu_xz, M_ta_ucu_yx, M_ta_t, M_ta_ucu_yz, M_ta_ucu_zx, M_ta_ucu_zy, M_ta_zz,
+        M_aa_ucu_xx, M_aa_ucu_xy, M_aa_ucu_xz, M_aa_ucu_yy, M_aa_ucu_yz, M_aa_ucu_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_ucu_xx
-    M_tt_yy = m_star - total_ucu_yy
-    M_tt_zz = m_star - total_ucu_zz
+    M_tt_xx = M_tt_ucu_xx + m_star
+    M_tt_yy = M_tt_ucu_yy + m_star
+    M_tt_zz = M_tt_ucu_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_ucu_xy_2
-    M_ta_xz = total_ucu_xz_2 - h_star_in_base_y
-    M_ta_yx = total_ucu_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_ucu_yz_2
-    M_ta_zx = h_star_in_base_y + total_ucu_zx
-    M_ta_zy = -h_star_in_base_x - total_ucu_zy
+    M_ta_xy = M_ta_ucu_xy + h_star_z
+    M_ta_xz = M_ta_ucu_xz - h_star_y
+    M_ta_yx = M_ta_ucu_yx - h_star_z
+    M_ta_yz = M_ta_ucu_yz + h_star_x
+    M_ta_zx = M_ta_ucu_zx + h_star_y
+    M_ta_zy = M_ta_ucu_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_ucu_xx_3
-    M_aa_xy = J_star_t_9 + total_ucu_xy_3
-    M_aa_xz = J_star_t_10 - total_ucu_xz_3
-    M_aa_yy = J_star_t_13 + total_ucu_yy_3
-    M_aa_yz = J_star_t_15 + total_ucu_yz_3
-    M_aa_zz = J_star_t_17 - total_ucu_zz_3
+    M_aa_xx = J_star_xx + M_aa_ucu_xx
+    M_aa_xy = J_star_xy + M_aa_ucu_xy
+    M_aa_xz = J_star_xz + M_aa_ucu_xz
+    M_aa_yy = J_star_yy + M_aa_ucu_yy
+    M_aa_yz = J_star_yz + M_aa_ucu_yz
+    M_aa_zz = J_star_zz + M_aa_ucu_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_ucu_xy
-    out_M[6] = -total_ucu_xy
-    out_M[2] = -total_ucu_xz
-    out_M[12] = -total_ucu_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_ucu_yz
-    out_M[13] = -total_ucu_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_ucu_xx_2
-    out_M[18] = total_ucu_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_ucu_yy_2
-    out_M[25] = -total_ucu_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_ucu_zz_2
-    out_M[32] = -total_ucu_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2768,8 +2941,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2822,58 +2996,79 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
-            ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy, ucu_Sigma_4_zz,
-            ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
-            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
-            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
-            ucu_branch_2, ucu_branch_4, ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y,
-            ucu_h_2_z, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_platform_joint_axis_platform_x,
-            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
-            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
+        ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
+            ucu_J_4_in_spec4_xz, ucu_J_4_in_spec4_yz, ucu_Sigma_2_in_axes2_xx,
+            ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_in_axes2_zz, ucu_Sigma_4_in_axes4_xx,
+            ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_in_axes4_zz, ucu_base_frame_xx,
+            ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+            ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+            ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2,
+            ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y, ucu_h_2_in_spec2_z,
+            ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y, ucu_h_4_in_spec4_z, ucu_mu_2_t, ucu_mu_2_t_2,
+            ucu_mu_2_t_3, ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
+            ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
+            ucu_platform_point_z,
         ) = k
         # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
         # (ucu-px_1) component along the reference direction
         ucu_px_1 = (
         ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
@@ -2886,379 +3081,394 @@ def _run_Z(m, X, V):
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-root_1) amplitude, with the sign of the branch
         ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = -inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
         # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        ucu_c_2 = -inv_ucu_root_2*ucu_root_1
         # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z
         # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_px_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_px_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_px_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
-        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
-        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2
+        ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2
+        # (ucu-py_4) component across the reference direction
+        ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1
         # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4
         # (ucu-root_4) amplitude, with the sign of the branch
         ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
         # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
         inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        ucu_c_4 = inv_ucu_root_4*ucu_px_4
         # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_c_2*ucu_c_4
-        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
-        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
-        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
-        ucu_w_1_t = ucu_s_2*ucu_s_4
-        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
-        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
-        axis_y_ucu_axes4_in_base_x = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
-            ucu_base_frame_xz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_y = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
-            ucu_base_frame_yz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_z = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
-            ucu_base_frame_zz*ucu_v_1_t_2
-        )
-        axis_x_ucu_axes4_x = (
-        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
-        )
-        axis_x_ucu_axes4_y = (
-        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
-        )
-        axis_x_ucu_axes4_z = (
-        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
-        )
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
-        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
-        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
-        # (ucu-w_1) force part of reciprocal wrench 1
-        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
-        # (ucu-w_4) force part of reciprocal wrench 4
-        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        ucu_s_4 = inv_ucu_root_4*ucu_py_4
         # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
-        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
-        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x
         ucu_S_dot_x = t_dot_x + ucu_S_dot_t
         ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
         ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
-        # (ucu-eta_1) rate at which the joints turn along moment direction 1
-        ucu_eta_1 = (
-        omega_x*(axis_x_ucu_axes4_x*ucu_end_p1_r3_x - ucu_axis_z_x*ucu_end_p1_r5_x) +
-            omega_y*(axis_x_ucu_axes4_y*ucu_end_p1_r3_x - ucu_axis_z_y*ucu_end_p1_r5_x) +
-            omega_z*(axis_x_ucu_axes4_z*ucu_end_p1_r3_x - ucu_axis_z_z*ucu_end_p1_r5_x)
-        )
-        # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_r0_x = (
+        ucu_S_dot_t_4 = (
         ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
             ucu_S_dot_z*ucu_base_frame_zx
         )
-        ucu_S_dot_r0_y = (
+        ucu_S_dot_t_5 = (
         ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
             ucu_S_dot_z*ucu_base_frame_zy
         )
-        ucu_S_dot_r0_z = (
+        ucu_S_dot_t_6 = (
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
-        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4
+        ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2
+        ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4
+        ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4
+        # (ucu-w_3) force part of reciprocal wrench 3
+        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
+        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
+        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
+        # (ucu-m1_w_4) moment part 1 of reciprocal wrench 4
+        ucu_m1_w_4 = -1.0/ucu_end_p1_in_axes4_x
+        # (ucu-eta_1) rate at which the joints turn along moment direction 1
+        ucu_eta_1_t = ucu_s_2*ucu_s_4
+        ucu_eta_1_t_2 = ucu_c_1*ucu_c_4 - ucu_eta_1_t*ucu_s_1
+        ucu_eta_1_t_3 = ucu_c_1*ucu_eta_1_t + ucu_c_4*ucu_s_1
+        axis_y_ucu_axes4_x = (
+        ucu_base_frame_xx*ucu_eta_1_t_2 + ucu_base_frame_xy*ucu_eta_1_t_3 +
+            ucu_base_frame_xz*ucu_e_1_in_axes4_y
+        )
+        axis_y_ucu_axes4_y = (
+        ucu_base_frame_yx*ucu_eta_1_t_2 + ucu_base_frame_yy*ucu_eta_1_t_3 +
+            ucu_base_frame_yz*ucu_e_1_in_axes4_y
+        )
+        axis_y_ucu_axes4_z = (
+        ucu_base_frame_zx*ucu_eta_1_t_2 + ucu_base_frame_zy*ucu_eta_1_t_3 +
+            ucu_base_frame_zz*ucu_e_1_in_axes4_y
+        )
+        axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y
+        axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z
+        axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x
+        ucu_eta_1 = (
+        omega_x*(axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_w_3_x) +
+            omega_y*(axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_w_3_y) +
+            omega_z*(axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_w_3_z)
+        )
+        # (ucu-qd_1) rate of joint 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1)
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
+            ucu_qd_1*ucu_v_1_in_axes2_y)
+        )
         # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
-        ucu_qd_4_t_2 = (
-        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
-            ucu_qd_4_t*ucu_v_1_r0_x)
-        )
-        ucu_qd_4_t_3 = (
-        inv_ucu_end_p1_r5_x*(ucu_eta_1 + ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
-        )
+        ucu_qd_4_t = ucu_end_p1_in_axes4_x*ucu_s_2 - ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_qd_4 = ucu_m1_w_4*(ucu_eta_1 + ucu_qd_1*ucu_qd_4_t - ucu_n_m1_in_axes2_z*ucu_qd_2)
         # (ucu-omega_1) angular velocity of link 1
-        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
-        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
+        ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2
+        ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1
         # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
-        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4
+        ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
+        ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
+        ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y
+        ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y
         # (ucu-omega_4) angular velocity of link 4
-        ucu_omega_4_z = ucu_omega_1_t - ucu_qd_4_t_3
-        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_4_t_3
+        ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
+        # (ucu-W_4) centripetal tensor of link 4
+        ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z
+        ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z
         # (ucu-u_1) centripetal acceleration of the connection point
         ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
         ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
         ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2
-        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
-        # (ucu-W_2) centripetal tensor of link 2
-        ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t
-        ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2
-        ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2
-        ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
-        # (ucu-W_2) centripetal tensor of link 2
-        ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x
-        ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y
-        ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y
-        # (ucu-bias) acceleration of the connection point at zero joint accelerations
-        ucu_bias_t = 2.0*ucu_S_dot_r3_x
-        ucu_bias_x = (
-        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
-            ucu_s_4*ucu_zeta_2_y)
-        )
-        ucu_bias_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
-        )
-        # (ucu-u_1) centripetal acceleration of the connection point
-        ucu_u_1_tip_x = (
+        ucu_u_1_in_axes4_x = (
         axis_x_ucu_axes4_x*ucu_u_1_x + axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z
         )
-        ucu_u_1_tip_y = (
-        axis_y_ucu_axes4_in_base_x*ucu_u_1_x + axis_y_ucu_axes4_in_base_y*ucu_u_1_y +
-            axis_y_ucu_axes4_in_base_z*ucu_u_1_z
+        ucu_u_1_in_axes4_y = (
+        axis_y_ucu_axes4_x*ucu_u_1_x + axis_y_ucu_axes4_y*ucu_u_1_y + axis_y_ucu_axes4_z*ucu_u_1_z
+        )
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
+        ucu_bias_in_axes4_x = (
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
+        )
+        ucu_bias_in_axes4_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+            ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        ucu_rel_o_x = ucu_u_1_tip_x - ucu_bias_x
-        ucu_rel_o_y = ucu_u_1_tip_y - ucu_bias_y
-        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
-        ucu_beta_4_x = -ucu_zeta_2_t - ucu_zeta_4_x
+        ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x
+        ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_omega_tip_x = (
+        ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4
+        ucu_omega_in_axes4_x = (
         axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        ucu_omega_tip_y = (
-        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
-            axis_y_ucu_axes4_in_base_z*omega_z
+        ucu_omega_in_axes4_y = (
+        axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
         )
-        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
-        ucu_nd_m1_x = (
-        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_2_r1_x
+        ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z
+        ucu_nd_m1_in_axes4_x = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
         )
-        ucu_nd_m1_z = (
-        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_4_z
+        ucu_nd_m1_in_axes4_z = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
+            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
         )
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x
-        ucu_nu_1_t_2 = (
-        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
-            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
-            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
+        ucu_nu_1_t = (
+        ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x - ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x
         )
-        ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
-        # (ucu-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
-        ucu_qdd_4_o_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_o_y + ucu_rel_o_x*ucu_s_4)
-        ucu_qdd_4_o_t_2 = (
-        inv_ucu_root_2*(ucu_qdd_4_o_t*ucu_v_1_r0_x + ucu_rel_o_y*ucu_s_4 - ucu_c_4*ucu_rel_o_x)
+        ucu_nu_1_t_2 = (
+        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
+            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
+            (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
+        )
+        ucu_nu_1 = ucu_nu_1_t - ucu_nu_1_t_2
+        # (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        ucu_qdd_1_o = (
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_o_in_axes4_y + ucu_rel_o_in_axes4_x*ucu_s_4)
+        )
+        # (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        ucu_qdd_2_o = (
+        -inv_ucu_root_2*(ucu_qdd_1_o*ucu_v_1_in_axes2_y + ucu_rel_o_in_axes4_y*ucu_s_4 -
+            ucu_c_4*ucu_rel_o_in_axes4_x)
         )
         # (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ucu_alpha_1_o_t = ucu_qdd_4_o_t*ucu_s_2
-        ucu_alpha_1_o_t_2 = ucu_c_2*ucu_qdd_4_o_t
+        ucu_alpha_1_o_in_axes2_x = ucu_qdd_1_o*ucu_s_2
+        ucu_alpha_1_o_in_axes2_y = ucu_c_2*ucu_qdd_1_o
         # (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        ucu_alpha_2_o_x = ucu_alpha_1_o_t - ucu_zeta_2_x
-        ucu_alpha_2_o_y = -ucu_alpha_1_o_t_2 - ucu_zeta_2_y
+        ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x
+        ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz
+        # (ucu-B_2_o) remainder of the acceleration tensor of link 2
+        ucu_B_2_o_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2_o
+        ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o
+        ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y
+        ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x
         # (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
-        ucu_alpha_4_o_x = ucu_alpha_2_o_y*ucu_c_4 - ucu_zeta_4_x - ucu_qdd_4_o_t_2*ucu_s_4
-        ucu_alpha_4_o_y = (
-        ucu_omega_2_r1_x*ucu_qd_4_t_3 - ucu_alpha_2_o_y*ucu_s_4 - ucu_c_4*ucu_qdd_4_o_t_2
+        ucu_alpha_4_o_in_axes4_x = (
+        ucu_zeta_4_in_axes4_x + ucu_alpha_2_o_in_axes2_y*ucu_c_4 + ucu_qdd_2_o*ucu_s_4
         )
-        ucu_alpha_4_o_z = (
-        ucu_alpha_2_o_x - inv_ucu_end_p1_r5_x*(ucu_nu_1 + ucu_n_m1_t*ucu_qdd_4_o_t_2 +
-            ucu_qdd_4_o_t*ucu_w_1_t_2)
+        ucu_alpha_4_o_in_axes4_y = (
+        ucu_c_4*ucu_qdd_2_o - ucu_alpha_2_o_in_axes2_y*ucu_s_4 - ucu_omega_2_in_axes4_x*ucu_qd_4
         )
-        # (ucu-W_4) centripetal tensor of link 4
-        ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z
-        ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z
-        ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z
+        ucu_alpha_4_o_in_axes4_z = (
+        ucu_alpha_2_o_in_axes2_x + ucu_m1_w_4*(ucu_nu_1 + ucu_qd_4_t*ucu_qdd_1_o -
+            ucu_n_m1_in_axes2_z*ucu_qdd_2_o)
+        )
         # (ucu-B_4_o) remainder of the acceleration tensor of link 4
-        ucu_B_4_o_xy = ucu_W_2_xy_2 - ucu_alpha_4_o_z
-        ucu_B_4_o_xz = ucu_W_4_xz + ucu_alpha_4_o_y
-        ucu_B_4_o_yx = ucu_W_2_xy_2 + ucu_alpha_4_o_z
-        ucu_B_4_o_yz = ucu_W_4_yz - ucu_alpha_4_o_x
-        ucu_B_4_o_zx = ucu_W_4_xz - ucu_alpha_4_o_y
-        ucu_B_4_o_zy = ucu_W_4_yz + ucu_alpha_4_o_x
-        # (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
-        ucu_phi_4_o_z = (
-        ucu_B_4_o_zx*ucu_h_4_y + ucu_B_4_o_zy*ucu_h_4_z - ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5)
-        )
+        ucu_B_4_o_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z
+        ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y
+        ucu_B_4_o_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z
+        ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x
+        ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y
+        ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x
         # (ucu-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        ucu_acc_4_o_x = (
-        ucu_u_1_tip_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
+        ucu_acc_4_o_in_axes4_x = (
+        ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
             axis_x_ucu_axes4_z*gravity_z
         )
-        ucu_acc_4_o_y = (
-        ucu_u_1_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
-            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z
+        ucu_acc_4_o_in_axes4_y = (
+        ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*gravity_x - axis_y_ucu_axes4_y*gravity_y -
+            axis_y_ucu_axes4_z*gravity_z
         )
-        ucu_acc_4_o_z = (
-        ucu_axis_z_x*ucu_u_1_x + ucu_axis_z_y*ucu_u_1_y + ucu_axis_z_z*ucu_u_1_z -
-            gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y - gravity_z*ucu_axis_z_z
+        ucu_acc_4_o_in_axes4_z = (
+        ucu_u_1_x*ucu_w_3_x + ucu_u_1_y*ucu_w_3_y + ucu_u_1_z*ucu_w_3_z - gravity_x*ucu_w_3_x -
+            gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z
+        )
+        # (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
+        ucu_phi_4_o_in_axes4_z = (
+        ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y + ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z -
+            ucu_h_4_in_spec4_x*(ucu_phi_4_o_t + ucu_phi_4_o_t_2)
         )
         # (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        ucu_mu_4_o_x = (
-        ucu_B_4_o_yx*ucu_J_4_xy + ucu_B_4_o_zy*ucu_Sigma_4_yy + ucu_J_4_xz*(ucu_W_2_t_5 -
-            ucu_W_4_t) + ucu_acc_4_o_z*ucu_h_4_z - ucu_B_4_o_yz*ucu_Sigma_4_zz -
-            ucu_B_4_o_zx*ucu_J_4_yz - ucu_acc_4_o_y*ucu_h_4_x
+        ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
+        ucu_mu_4_o_in_axes4_x = (
+        ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_o_in_axes4_zy*ucu_Sigma_4_in_axes4_yy
+            + ucu_J_4_in_spec4_xz*(ucu_phi_4_o_t_2 - ucu_mu_4_o_t) +
+            ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_z -
+            ucu_B_4_o_in_axes4_yz*ucu_Sigma_4_in_axes4_zz -
+            ucu_B_4_o_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_x
         )
-        ucu_mu_4_o_y = (
-        ucu_B_4_o_xz*ucu_Sigma_4_zz + ucu_B_4_o_zy*ucu_J_4_yz + ucu_acc_4_o_x*ucu_h_4_x -
-            ucu_B_4_o_xy*ucu_J_4_xz - ucu_B_4_o_zx*ucu_Sigma_4_xx - ucu_J_4_xy*(ucu_W_2_t_4 -
-            ucu_W_4_t) - ucu_acc_4_o_z*ucu_h_4_y
+        ucu_mu_4_o_in_axes4_y = (
+        ucu_B_4_o_in_axes4_xz*ucu_Sigma_4_in_axes4_zz + ucu_B_4_o_in_axes4_zy*ucu_J_4_in_spec4_yz
+            + ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_x -
+            ucu_B_4_o_in_axes4_xy*ucu_J_4_in_spec4_xz -
+            ucu_B_4_o_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_o_t -
+            ucu_mu_4_o_t) - ucu_acc_4_o_in_axes4_z*ucu_h_4_in_spec4_y
         )
-        ucu_mu_4_o_z = (
-        ucu_B_4_o_xz*ucu_J_4_xz + ucu_B_4_o_yx*ucu_Sigma_4_xx + ucu_J_4_yz*(ucu_W_2_t_4 -
-            ucu_W_2_t_5) + ucu_acc_4_o_y*ucu_h_4_y - ucu_B_4_o_xy*ucu_Sigma_4_yy -
-            ucu_B_4_o_yz*ucu_J_4_xy - ucu_acc_4_o_x*ucu_h_4_z
+        ucu_mu_4_o_in_axes4_z = (
+        ucu_B_4_o_in_axes4_xz*ucu_J_4_in_spec4_xz + ucu_B_4_o_in_axes4_yx*ucu_Sigma_4_in_axes4_xx
+            + ucu_J_4_in_spec4_yz*(ucu_phi_4_o_t - ucu_phi_4_o_t_2) +
+            ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
+            ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z
         )
-        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x
-        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
-        ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y
-        ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2
-        # (ucu-B_2_o) remainder of the acceleration tensor of link 2
-        ucu_B_2_o_xy = ucu_qdd_4_o_t_2 - ucu_W_2_xy
-        ucu_B_2_o_yx = -ucu_W_2_xy - ucu_qdd_4_o_t_2
-        ucu_B_2_o_zx = ucu_zeta_2_y - ucu_alpha_2_o_y
-        ucu_B_2_o_zy = ucu_alpha_2_o_x - ucu_zeta_2_x
         # (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        ucu_mu_2_o_x = (
-        ucu_B_2_o_yx*ucu_J_2_xy + ucu_B_2_o_zx*ucu_J_2_xz + ucu_B_2_o_zy*ucu_Sigma_2_yy +
-            ucu_Sigma_2_zz*ucu_alpha_1_o_t + ucu_g_r1_x*ucu_h_2_z + ucu_g_r3_y*ucu_h_2_y -
-            ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3)
+        ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
+        ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
+        ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2
+        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
+        ucu_mu_2_o_t_4 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_o_t_4 + ucu_mu_2_t_3*ucu_s_2
+        ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_o_t_4*ucu_s_2
+        ucu_mu_2_o_in_axes2_x = (
+        ucu_B_2_o_in_axes2_yx*ucu_J_2_in_spec2_xy + ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
+            ucu_B_2_o_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
+            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_o_t_2 -
+            ucu_mu_2_o_t_3)
         )
-        ucu_mu_2_o_y = (
-        ucu_B_2_o_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x - ucu_B_2_o_zx*ucu_Sigma_2_xx -
-            ucu_B_2_o_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t - ucu_W_2_t_3) -
-            ucu_Sigma_2_zz*ucu_alpha_1_o_t_2 - ucu_g_r3_x*ucu_h_2_y
+        ucu_mu_2_o_in_axes2_y = (
+        ucu_B_2_o_in_axes2_xy*ucu_J_2_in_spec2_yz +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
+            - ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_o_t -
+            ucu_mu_2_o_t_3) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y
         )
-        ucu_mu_2_o_z = (
-        ucu_B_2_o_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_o_t + ucu_J_2_yz*ucu_alpha_1_o_t_2 -
-            ucu_B_2_o_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t - ucu_W_2_t_2) -
-            ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x
+        ucu_mu_2_o_in_axes2_z = (
+        ucu_B_2_o_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
+            ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x -
+            ucu_B_2_o_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_o_t -
+            ucu_mu_2_o_t_2) - ucu_J_2_in_spec2_yz*ucu_alpha_1_o_in_axes2_y -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         )
         # (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        ucu_N_2_o_x = ucu_mu_2_o_x + ucu_mu_4_o_z
-        ucu_N_2_o_y = ucu_mu_2_o_y + ucu_c_4*ucu_mu_4_o_x - ucu_mu_4_o_y*ucu_s_4
-        ucu_N_2_o_z = ucu_mu_2_o_z + ucu_c_4*ucu_mu_4_o_y + ucu_mu_4_o_x*ucu_s_4
-        # (ucu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_G_o_t = inv_ucu_end_p1_r5_x*ucu_mu_4_o_z
-        ucu_G_o_t_2 = inv_ucu_root_2*(ucu_N_2_o_z + ucu_G_o_t*ucu_n_m1_t)
-        ucu_G_o_t_3 = (
-        inv_ucu_v_1_r0_y*(ucu_G_o_t*ucu_w_1_t_2 + ucu_G_o_t_2*ucu_v_1_r0_x + ucu_N_2_o_y*ucu_c_2 -
-            ucu_N_2_o_x*ucu_s_2)
+        ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z
+        ucu_N_2_o_in_axes2_y = (
+        ucu_mu_2_o_in_axes2_y + ucu_c_4*ucu_mu_4_o_in_axes4_x - ucu_mu_4_o_in_axes4_y*ucu_s_4
         )
+        ucu_N_2_o_in_axes2_z = (
+        ucu_mu_2_o_in_axes2_z + ucu_c_4*ucu_mu_4_o_in_axes4_y + ucu_mu_4_o_in_axes4_x*ucu_s_4
+        )
+        # (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_G_m1_o = ucu_m1_w_4*ucu_mu_4_o_in_axes4_z
         # (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_o_x = (
-        ucu_G_o_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) - ucu_B_4_o_xy*ucu_h_4_z -
-            ucu_B_4_o_xz*ucu_h_4_x - ucu_G_o_t_2*ucu_c_4
+        ucu_c_o_t = inv_ucu_root_2*(ucu_N_2_o_in_axes2_z - ucu_G_m1_o*ucu_n_m1_in_axes2_z)
+        ucu_c_o_t_2 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_c_o_t*ucu_v_1_in_axes2_y - ucu_G_m1_o*ucu_qd_4_t -
+            ucu_N_2_o_in_axes2_x*ucu_s_2 - ucu_N_2_o_in_axes2_y*ucu_c_2)
         )
-        ucu_c_o_y = (
-        ucu_G_o_t_2*ucu_s_4 + ucu_G_o_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 + ucu_W_4_t) -
-            ucu_B_4_o_yx*ucu_h_4_y - ucu_B_4_o_yz*ucu_h_4_x
+        ucu_c_o_in_axes4_x = (
+        ucu_c_o_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_o_t + ucu_phi_4_o_t_2) -
+            ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x -
+            ucu_c_4*ucu_c_o_t
         )
+        ucu_c_o_in_axes4_y = (
+        ucu_c_4*ucu_c_o_t_2 + ucu_c_o_t*ucu_s_4 + ucu_h_4_in_spec4_z*(ucu_mu_4_o_t +
+            ucu_phi_4_o_t) - ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y -
+            ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x
+        )
+        # (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        ucu_c_m_o_in_axes4_x = -ucu_G_m1_o*ucu_n_m1_in_axes4_x
         # (ucu-U) velocity and gravity terms of the leg force
-        ucu_U_in_base_x = (
-        ucu_axis_z_x*ucu_phi_4_o_z - axis_x_ucu_axes4_x*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_x*ucu_c_o_y
+        ucu_U_x = (
+        ucu_phi_4_o_in_axes4_z*ucu_w_3_x - axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x -
+            axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y
         )
-        ucu_U_in_base_y = (
-        ucu_axis_z_y*ucu_phi_4_o_z - axis_x_ucu_axes4_y*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_y*ucu_c_o_y
+        ucu_U_y = (
+        ucu_phi_4_o_in_axes4_z*ucu_w_3_y - axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x -
+            axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y
         )
-        ucu_U_in_base_z = (
-        ucu_axis_z_z*ucu_phi_4_o_z - axis_x_ucu_axes4_z*ucu_c_o_x -
-            axis_y_ucu_axes4_in_base_z*ucu_c_o_y
+        ucu_U_z = (
+        ucu_phi_4_o_in_axes4_z*ucu_w_3_z - axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x -
+            axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y
         )
-        # (ucu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_G_m_o_x = ucu_G_o_t*ucu_end_p1_r3_x
         # (Z_a) rotational part of Z
         ucu_Z_a_t = (
-        ucu_U_in_base_z*ucu_q_in_base_y + ucu_axis_z_x*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_x*ucu_G_m_o_x - ucu_U_in_base_y*ucu_q_in_base_z
+        ucu_U_z*ucu_q_y + ucu_mu_4_o_in_axes4_z*ucu_w_3_x -
+            axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*ucu_q_z
         )
         ucu_Z_a_t_2 = (
-        ucu_U_in_base_x*ucu_q_in_base_z + ucu_axis_z_y*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_y*ucu_G_m_o_x - ucu_U_in_base_z*ucu_q_in_base_x
+        ucu_U_x*ucu_q_z + ucu_mu_4_o_in_axes4_z*ucu_w_3_y -
+            axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*ucu_q_x
         )
         ucu_Z_a_t_3 = (
-        ucu_U_in_base_y*ucu_q_in_base_x + ucu_axis_z_z*ucu_mu_4_o_z -
-            axis_x_ucu_axes4_z*ucu_G_m_o_x - ucu_U_in_base_x*ucu_q_in_base_y
+        ucu_U_y*ucu_q_x + ucu_mu_4_o_in_axes4_z*ucu_w_3_z -
+            axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*ucu_q_y
         )
         ok = (
         ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
-            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ucu_U_in_base_x, ucu_U_in_base_y, ucu_U_in_base_z, ucu_Z_a_t, ucu_Z_a_t_2,
-            ucu_Z_a_t_3,
+        ucu_U_x, ucu_U_y, ucu_U_z, ucu_Z_a_t, ucu_Z_a_t_2, ucu_Z_a_t_3,
         ))
-    total_ucu_x, total_ucu_y, total_ucu_z, total_ucu_x_2, total_ucu_y_2, total_ucu_z_2 = sums
+    Z_t_ucu_x, Z_t_ucu_y, Z_t_ucu_z, Z_a_ucu_x, Z_a_ucu_y, Z_a_ucu_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_ucu_x
-    Z_t_y = Z_p_y + total_ucu_y
-    Z_t_z = Z_p_z + total_ucu_z
+    Z_t_x = Z_p_x + Z_t_ucu_x
+    Z_t_y = Z_p_y + Z_t_ucu_y
+    Z_t_z = Z_p_z + Z_t_ucu_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_ucu_x_2
-    Z_a_y = Z_q_in_base_y + total_ucu_y_2
-    Z_a_z = Z_q_in_base_z + total_ucu_z_2
+    Z_a_x = Z_a_ucu_x + Z_q_x
+    Z_a_y = Z_a_ucu_y + Z_q_y
+    Z_a_z = Z_a_ucu_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -3314,18 +3524,18 @@ def _run_H(m, X):
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
         # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
         # (ucu-px_1) component along the reference direction
         ucu_px_1 = (
         ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
@@ -3337,34 +3547,35 @@ def _run_H(m, X):
         # (ucu-rho2_1) squared amplitude
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
-        # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
+        # (ucu-w_3) force part of reciprocal wrench 3
         inv_ucu_root_2 = 1.0/ucu_root_2
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
+        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
+        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
+        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
         # (ucu-H_a_3) moment of the column's unit force about the platform origin
-        ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z
-        ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x
-        ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y
+        ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y
+        ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z
+        ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x
         ok = (
         ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_root_2) >
             _TOLERANCE * 0.8))
         )
-        out_H[_H_ucu[0][leg]] = ucu_axis_z_x
-        out_H[_H_ucu[1][leg]] = ucu_axis_z_y
-        out_H[_H_ucu[2][leg]] = ucu_axis_z_z
-        out_H[_H_ucu[3][leg]] = ucu_H_a_3_t
-        out_H[_H_ucu[4][leg]] = ucu_H_a_3_t_2
-        out_H[_H_ucu[5][leg]] = ucu_H_a_3_t_3
+        # (ucu-w_3) force part of reciprocal wrench 3
+        out_H[_H_ucu[0][leg]] = ucu_w_3_x
+        out_H[_H_ucu[1][leg]] = ucu_w_3_y
+        out_H[_H_ucu[2][leg]] = ucu_w_3_z
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        out_H[_H_ucu[3][leg]] = ucu_H_a_3_x
+        out_H[_H_ucu[4][leg]] = ucu_H_a_3_y
+        out_H[_H_ucu[5][leg]] = ucu_H_a_3_z
     return ok, (out_H,)
 
 
@@ -3373,8 +3584,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3440,90 +3652,106 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
-            ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy, ucu_Sigma_4_zz,
-            ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
-            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
-            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
-            ucu_branch_2, ucu_branch_4, ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y,
-            ucu_h_2_z, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_platform_joint_axis_platform_x,
-            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
-            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
+        ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
+            ucu_J_4_in_spec4_xz, ucu_J_4_in_spec4_yz, ucu_Sigma_2_in_axes2_xx,
+            ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_in_axes2_zz, ucu_Sigma_4_in_axes4_xx,
+            ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_in_axes4_zz, ucu_base_frame_xx,
+            ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+            ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+            ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2,
+            ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y, ucu_h_2_in_spec2_z,
+            ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y, ucu_h_4_in_spec4_z, ucu_mu_2_t, ucu_mu_2_t_2,
+            ucu_mu_2_t_3, ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
+            ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
+            ucu_platform_point_z,
         ) = k
         # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
         # (ucu-px_1) component along the reference direction
         ucu_px_1 = (
         ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
@@ -3536,393 +3764,409 @@ def _run_required(m, X, V, A):
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-root_1) amplitude, with the sign of the branch
         ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = -inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
         # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        ucu_c_2 = -inv_ucu_root_2*ucu_root_1
         # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z
         # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_px_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_px_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_px_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
-        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
-        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2
+        ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2
+        # (ucu-py_4) component across the reference direction
+        ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1
         # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4
         # (ucu-root_4) amplitude, with the sign of the branch
         ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
         # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
         inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        ucu_c_4 = inv_ucu_root_4*ucu_px_4
         # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_c_2*ucu_c_4
-        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
-        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
-        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
-        ucu_w_1_t = ucu_s_2*ucu_s_4
-        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
-        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
-        axis_y_ucu_axes4_in_base_x = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
-            ucu_base_frame_xz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_y = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
-            ucu_base_frame_yz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_z = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
-            ucu_base_frame_zz*ucu_v_1_t_2
-        )
-        axis_x_ucu_axes4_x = (
-        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
-        )
-        axis_x_ucu_axes4_y = (
-        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
-        )
-        axis_x_ucu_axes4_z = (
-        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
-        )
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
-        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
-        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
-        # (ucu-w_1) force part of reciprocal wrench 1
-        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
-        # (ucu-w_4) force part of reciprocal wrench 4
-        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        ucu_s_4 = inv_ucu_root_4*ucu_py_4
         # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
-        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
-        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x
         ucu_S_dot_x = t_dot_x + ucu_S_dot_t
         ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
         ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
-        ucu_S_dot_r0_x = (
+        ucu_S_dot_t_4 = (
         ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
             ucu_S_dot_z*ucu_base_frame_zx
         )
-        ucu_S_dot_r0_y = (
+        ucu_S_dot_t_5 = (
         ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
             ucu_S_dot_z*ucu_base_frame_zy
         )
-        ucu_S_dot_r0_z = (
+        ucu_S_dot_t_6 = (
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
-        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4
+        ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2
+        ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4
+        ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4
+        # (ucu-w_3) force part of reciprocal wrench 3
+        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
+        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
+        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
+        # (ucu-m1_w_4) moment part 1 of reciprocal wrench 4
+        ucu_m1_w_4 = -1.0/ucu_end_p1_in_axes4_x
+        # (ucu-qd_1) rate of joint 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1)
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
+            ucu_qd_1*ucu_v_1_in_axes2_y)
+        )
         # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
-        ucu_qd_4_t_2 = (
-        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
-            ucu_qd_4_t*ucu_v_1_r0_x)
+        ucu_qd_4_t = ucu_s_2*ucu_s_4
+        ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1
+        ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1
+        axis_y_ucu_axes4_x = (
+        ucu_base_frame_xx*ucu_qd_4_t_2 + ucu_base_frame_xy*ucu_qd_4_t_3 +
+            ucu_base_frame_xz*ucu_e_1_in_axes4_y
         )
-        # (ucu-omega_1) angular velocity of link 1
-        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
-        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
-        # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
-        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2
-        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
-        # (ucu-W_2) centripetal tensor of link 2
-        ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t
-        ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2
-        ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2
-        ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
-        # (ucu-W_2) centripetal tensor of link 2
-        ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x
-        ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y
-        ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y
-        # (ucu-bias) acceleration of the connection point at zero joint accelerations
-        ucu_bias_t = 2.0*ucu_S_dot_r3_x
-        ucu_bias_x = (
-        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
-            ucu_s_4*ucu_zeta_2_y)
+        axis_y_ucu_axes4_y = (
+        ucu_base_frame_yx*ucu_qd_4_t_2 + ucu_base_frame_yy*ucu_qd_4_t_3 +
+            ucu_base_frame_yz*ucu_e_1_in_axes4_y
         )
-        ucu_bias_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
+        axis_y_ucu_axes4_z = (
+        ucu_base_frame_zx*ucu_qd_4_t_2 + ucu_base_frame_zy*ucu_qd_4_t_3 +
+            ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
-        # (ucu-nd_m1) rate of moment direction 1
-        ucu_omega_tip_x = (
+        axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y
+        axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z
+        axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x
+        ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 - ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_omega_in_axes4_x = (
         axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        ucu_omega_tip_y = (
-        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
-            axis_y_ucu_axes4_in_base_z*omega_z
+        ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z
+        ucu_qd_4 = (
+        ucu_omega_in_axes4_z + ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x +
+            ucu_qd_1*ucu_qd_4_t_4 - ucu_n_m1_in_axes2_z*ucu_qd_2)
         )
-        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
-        ucu_nd_m1_x = (
-        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_2_r1_x
-        )
-        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x
-        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
-        ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y
-        ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2
-        # (ucu-H_a_3) moment of the column's unit force about the platform origin
-        ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z
-        ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x
-        ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y
-        # (ucu-qd_1) rate of joint 1
-        ucu_qd_1_t = (
-        ucu_omega_tip_z - inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x +
-            ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
-        )
+        # (ucu-omega_1) angular velocity of link 1
+        ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2
+        ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1
+        # (ucu-omega_2) angular velocity of link 2
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4
+        ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
+        ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
+        ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y
+        ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y
+        # (ucu-omega_4) angular velocity of link 4
+        ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
+        # (ucu-W_4) centripetal tensor of link 4
+        ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z
+        ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z
         # (ucu-a_p) acceleration of the connection point without its centripetal part
-        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y
-        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z
-        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x
+        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y
+        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z
+        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x
         # (ucu-S_ddot) acceleration of the connection point
         ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
         ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
         ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
-        ucu_S_ddot_tip_x = (
+        ucu_S_ddot_in_axes4_x = (
         axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
             axis_x_ucu_axes4_z*ucu_S_ddot_z
         )
-        ucu_S_ddot_tip_y = (
-        axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x + axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y +
-            axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z
+        ucu_S_ddot_in_axes4_y = (
+        axis_y_ucu_axes4_x*ucu_S_ddot_x + axis_y_ucu_axes4_y*ucu_S_ddot_y +
+            axis_y_ucu_axes4_z*ucu_S_ddot_z
+        )
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
+        ucu_bias_in_axes4_x = (
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
+        )
+        ucu_bias_in_axes4_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+            ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel) acceleration of the connection point left to the joint accelerations
-        ucu_rel_x = ucu_S_ddot_tip_x - ucu_bias_x
-        ucu_rel_y = ucu_S_ddot_tip_y - ucu_bias_y
-        # (ucu-omega_4) angular velocity of link 4
-        ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t
-        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t
-        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
-        ucu_beta_4_x = ucu_zeta_4_x - ucu_zeta_2_t
+        ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x
+        ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_nd_m1_z = (
-        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_4_z
+        ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4
+        ucu_omega_in_axes4_y = (
+        axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
+        )
+        ucu_nd_m1_in_axes4_x = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
+        )
+        ucu_nd_m1_in_axes4_z = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
+            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
         )
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x
+        ucu_nu_1_t = (
+        ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x - ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        )
         ucu_nu_1_t_2 = (
-        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
-            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
-            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
+        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
+            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
+            (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
         )
         ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
         # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
         ucu_etad_1_t = (
-        ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
-            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x +
-            alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z)
+        ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x +
+            alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z)
         )
         ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
         # (ucu-qdd_1) acceleration of joint 1
-        ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4)
-        ucu_qdd_1_t_2 = (
-        inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 - ucu_c_4*ucu_rel_x)
+        ucu_qdd_1 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y + ucu_rel_in_axes4_x*ucu_s_4)
         )
-        # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
-        ucu_acc_4_x = (
-        ucu_S_ddot_tip_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
-            axis_x_ucu_axes4_z*gravity_z
-        )
-        ucu_acc_4_y = (
-        ucu_S_ddot_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
-            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z
-        )
-        ucu_acc_4_z = (
-        ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y + ucu_S_ddot_z*ucu_axis_z_z -
-            gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y - gravity_z*ucu_axis_z_z
+        # (ucu-qdd_2) acceleration of joint 2
+        ucu_qdd_2 = (
+        -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y + ucu_rel_in_axes4_y*ucu_s_4 -
+            ucu_c_4*ucu_rel_in_axes4_x)
         )
         # (ucu-alpha_1) angular acceleration of link 1
-        ucu_alpha_1_t = ucu_qdd_1_t*ucu_s_2
-        ucu_alpha_1_t_2 = ucu_c_2*ucu_qdd_1_t
+        ucu_alpha_1_in_axes2_x = ucu_qdd_1*ucu_s_2
+        ucu_alpha_1_in_axes2_y = ucu_c_2*ucu_qdd_1
         # (ucu-alpha_2) angular acceleration of link 2
-        ucu_alpha_2_x = ucu_alpha_1_t - ucu_zeta_2_x
-        ucu_alpha_2_y = -ucu_alpha_1_t_2 - ucu_zeta_2_y
+        ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x
+        ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz
+        # (ucu-B_2) acceleration tensor of link 2
+        ucu_B_2_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2
+        ucu_B_2_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2
+        ucu_B_2_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_in_axes2_y
+        ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x
         # (ucu-alpha_4) angular acceleration of link 4
-        ucu_alpha_4_x = ucu_zeta_4_x + ucu_alpha_2_y*ucu_c_4 - ucu_qdd_1_t_2*ucu_s_4
-        ucu_alpha_4_y = (
-        -ucu_alpha_2_y*ucu_s_4 - ucu_c_4*ucu_qdd_1_t_2 - ucu_omega_2_r1_x*ucu_qd_1_t
+        ucu_alpha_4_in_axes4_x = (
+        ucu_zeta_4_in_axes4_x + ucu_alpha_2_in_axes2_y*ucu_c_4 + ucu_qdd_2*ucu_s_4
         )
-        ucu_alpha_4_z = (
-        ucu_alpha_2_x - inv_ucu_end_p1_r5_x*(ucu_etad_1 + ucu_n_m1_t*ucu_qdd_1_t_2 +
-            ucu_qdd_1_t*ucu_w_1_t_2)
+        ucu_alpha_4_in_axes4_y = (
+        ucu_c_4*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_s_4 - ucu_omega_2_in_axes4_x*ucu_qd_4
         )
-        # (ucu-W_4) centripetal tensor of link 4
-        ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z
-        ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z
-        ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z
+        ucu_alpha_4_in_axes4_z = (
+        ucu_alpha_2_in_axes2_x + ucu_m1_w_4*(ucu_etad_1 + ucu_qd_4_t_4*ucu_qdd_1 -
+            ucu_n_m1_in_axes2_z*ucu_qdd_2)
+        )
         # (ucu-B_4) acceleration tensor of link 4
-        ucu_B_4_xy = ucu_W_2_xy_2 - ucu_alpha_4_z
-        ucu_B_4_xz = ucu_W_4_xz + ucu_alpha_4_y
-        ucu_B_4_yx = ucu_W_2_xy_2 + ucu_alpha_4_z
-        ucu_B_4_yz = ucu_W_4_yz - ucu_alpha_4_x
-        ucu_B_4_zx = ucu_W_4_xz - ucu_alpha_4_y
-        ucu_B_4_zy = ucu_W_4_yz + ucu_alpha_4_x
+        ucu_B_4_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z
+        ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y
+        ucu_B_4_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z
+        ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x
+        ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y
+        ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x
+        # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
+        ucu_acc_4_in_axes4_x = (
+        ucu_S_ddot_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
+            axis_x_ucu_axes4_z*gravity_z
+        )
+        ucu_acc_4_in_axes4_y = (
+        ucu_S_ddot_in_axes4_y - axis_y_ucu_axes4_x*gravity_x - axis_y_ucu_axes4_y*gravity_y -
+            axis_y_ucu_axes4_z*gravity_z
+        )
+        ucu_acc_4_in_axes4_z = (
+        ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y + ucu_S_ddot_z*ucu_w_3_z -
+            gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z
+        )
         # (ucu-phi_4) inertia force of link 4 from its turning about its reference point
-        ucu_phi_4_z = (
-        ucu_B_4_zx*ucu_h_4_y + ucu_B_4_zy*ucu_h_4_z - ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5)
+        ucu_phi_4_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_phi_4_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
+        ucu_phi_4_in_axes4_z = (
+        ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y + ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z -
+            ucu_h_4_in_spec4_x*(ucu_phi_4_t + ucu_phi_4_t_2)
         )
         # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
-        ucu_mu_4_x = (
-        ucu_B_4_yx*ucu_J_4_xy + ucu_B_4_zy*ucu_Sigma_4_yy + ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) +
-            ucu_acc_4_z*ucu_h_4_z - ucu_B_4_yz*ucu_Sigma_4_zz - ucu_B_4_zx*ucu_J_4_yz -
-            ucu_acc_4_y*ucu_h_4_x
+        ucu_mu_4_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
+        ucu_mu_4_in_axes4_x = (
+        ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy +
+            ucu_J_4_in_spec4_xz*(ucu_phi_4_t_2 - ucu_mu_4_t) +
+            ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz
+            - ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x
         )
-        ucu_mu_4_y = (
-        ucu_B_4_xz*ucu_Sigma_4_zz + ucu_B_4_zy*ucu_J_4_yz + ucu_acc_4_x*ucu_h_4_x -
-            ucu_B_4_xy*ucu_J_4_xz - ucu_B_4_zx*ucu_Sigma_4_xx - ucu_J_4_xy*(ucu_W_2_t_4 -
-            ucu_W_4_t) - ucu_acc_4_z*ucu_h_4_y
+        ucu_mu_4_in_axes4_y = (
+        ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz + ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz +
+            ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x - ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz -
+            ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_t -
+            ucu_mu_4_t) - ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y
         )
-        ucu_mu_4_z = (
-        ucu_B_4_xz*ucu_J_4_xz + ucu_B_4_yx*ucu_Sigma_4_xx + ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5)
-            + ucu_acc_4_y*ucu_h_4_y - ucu_B_4_xy*ucu_Sigma_4_yy - ucu_B_4_yz*ucu_J_4_xy -
-            ucu_acc_4_x*ucu_h_4_z
+        ucu_mu_4_in_axes4_z = (
+        ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz + ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx +
+            ucu_J_4_in_spec4_yz*(ucu_phi_4_t - ucu_phi_4_t_2) +
+            ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy
+            - ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z
         )
-        # (ucu-B_2) acceleration tensor of link 2
-        ucu_B_2_xy = ucu_qdd_1_t_2 - ucu_W_2_xy
-        ucu_B_2_yx = -ucu_W_2_xy - ucu_qdd_1_t_2
-        ucu_B_2_zx = ucu_zeta_2_y - ucu_alpha_2_y
-        ucu_B_2_zy = ucu_alpha_2_x - ucu_zeta_2_x
         # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ucu_mu_2_x = (
-        ucu_B_2_yx*ucu_J_2_xy + ucu_B_2_zx*ucu_J_2_xz + ucu_B_2_zy*ucu_Sigma_2_yy +
-            ucu_Sigma_2_zz*ucu_alpha_1_t + ucu_g_r1_x*ucu_h_2_z + ucu_g_r3_y*ucu_h_2_y -
-            ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3)
+        ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
+        ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
+        ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
+        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
+        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_mu_2_t_3*ucu_s_2
+        ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_t_7*ucu_s_2
+        ucu_mu_2_in_axes2_x = (
+        ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy + ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz +
+            ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y +
+            ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
+            ucu_mu_2_t_6)
         )
-        ucu_mu_2_y = (
-        ucu_B_2_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x - ucu_B_2_zx*ucu_Sigma_2_xx -
-            ucu_B_2_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t - ucu_W_2_t_3) -
-            ucu_Sigma_2_zz*ucu_alpha_1_t_2 - ucu_g_r3_x*ucu_h_2_y
+        ucu_mu_2_in_axes2_y = (
+        ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y +
+            ucu_g_in_axes2_z*ucu_h_2_in_spec2_x - ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 -
+            ucu_mu_2_t_6) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y
         )
-        ucu_mu_2_z = (
-        ucu_B_2_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_t + ucu_J_2_yz*ucu_alpha_1_t_2 -
-            ucu_B_2_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t - ucu_W_2_t_2) -
-            ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x
+        ucu_mu_2_in_axes2_z = (
+        ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx + ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
+            ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
+            ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         )
         # (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        ucu_N_2_x = ucu_mu_2_x + ucu_mu_4_z
-        ucu_N_2_y = ucu_mu_2_y + ucu_c_4*ucu_mu_4_x - ucu_mu_4_y*ucu_s_4
-        ucu_N_2_z = ucu_mu_2_z + ucu_c_4*ucu_mu_4_y + ucu_mu_4_x*ucu_s_4
-        # (ucu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_G_t = inv_ucu_end_p1_r5_x*ucu_mu_4_z
-        ucu_G_t_2 = inv_ucu_root_2*(ucu_N_2_z + ucu_G_t*ucu_n_m1_t)
-        ucu_G_t_3 = (
-        inv_ucu_v_1_r0_y*(ucu_G_t*ucu_w_1_t_2 + ucu_G_t_2*ucu_v_1_r0_x + ucu_N_2_y*ucu_c_2 -
-            ucu_N_2_x*ucu_s_2)
+        ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z
+        ucu_N_2_in_axes2_y = (
+        ucu_mu_2_in_axes2_y + ucu_c_4*ucu_mu_4_in_axes4_x - ucu_mu_4_in_axes4_y*ucu_s_4
         )
+        ucu_N_2_in_axes2_z = (
+        ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_y + ucu_mu_4_in_axes4_x*ucu_s_4
+        )
+        # (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_G_m1 = ucu_m1_w_4*ucu_mu_4_in_axes4_z
         # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
+        ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z - ucu_G_m1*ucu_n_m1_in_axes2_z)
+        ucu_c_t_2 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_c_t*ucu_v_1_in_axes2_y - ucu_G_m1*ucu_qd_4_t_4 -
+            ucu_N_2_in_axes2_x*ucu_s_2 - ucu_N_2_in_axes2_y*ucu_c_2)
+        )
+        ucu_c_in_axes4_x = (
+        ucu_c_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_t + ucu_phi_4_t_2) -
+            ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x -
+            ucu_c_4*ucu_c_t
+        )
+        ucu_c_in_axes4_y = (
+        ucu_c_4*ucu_c_t_2 + ucu_c_t*ucu_s_4 + ucu_h_4_in_spec4_z*(ucu_mu_4_t + ucu_phi_4_t) -
+            ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x
+        )
         ucu_c_x = (
-        ucu_G_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) - ucu_B_4_xy*ucu_h_4_z -
-            ucu_B_4_xz*ucu_h_4_x - ucu_G_t_2*ucu_c_4
+        axis_x_ucu_axes4_x*ucu_c_in_axes4_x + axis_y_ucu_axes4_x*ucu_c_in_axes4_y -
+            ucu_phi_4_in_axes4_z*ucu_w_3_x
         )
         ucu_c_y = (
-        ucu_G_t_2*ucu_s_4 + ucu_G_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 + ucu_W_4_t) -
-            ucu_B_4_yx*ucu_h_4_y - ucu_B_4_yz*ucu_h_4_x
+        axis_x_ucu_axes4_y*ucu_c_in_axes4_x + axis_y_ucu_axes4_y*ucu_c_in_axes4_y -
+            ucu_phi_4_in_axes4_z*ucu_w_3_y
         )
-        # (ucu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_G_m_x = ucu_G_t*ucu_end_p1_r3_x
-        # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_in_base_x = (
-        axis_x_ucu_axes4_x*ucu_c_x + axis_y_ucu_axes4_in_base_x*ucu_c_y - ucu_axis_z_x*ucu_phi_4_z
+        ucu_c_z = (
+        axis_x_ucu_axes4_z*ucu_c_in_axes4_x + axis_y_ucu_axes4_z*ucu_c_in_axes4_y -
+            ucu_phi_4_in_axes4_z*ucu_w_3_z
         )
-        ucu_c_in_base_y = (
-        axis_x_ucu_axes4_y*ucu_c_x + axis_y_ucu_axes4_in_base_y*ucu_c_y - ucu_axis_z_y*ucu_phi_4_z
-        )
-        ucu_c_in_base_z = (
-        axis_x_ucu_axes4_z*ucu_c_x + axis_y_ucu_axes4_in_base_z*ucu_c_y - ucu_axis_z_z*ucu_phi_4_z
-        )
+        # (ucu-c_m) moment of the leg on the platform without actuation
+        ucu_c_m_in_axes4_x = -ucu_G_m1*ucu_n_m1_in_axes4_x
         # (R_a) moment that actuators and external wrench must give
         ucu_R_a_t = (
-        axis_x_ucu_axes4_x*ucu_G_m_x + ucu_c_in_base_z*ucu_q_in_base_y - ucu_axis_z_x*ucu_mu_4_z -
-            ucu_c_in_base_y*ucu_q_in_base_z
+        ucu_c_y*ucu_q_z + ucu_mu_4_in_axes4_z*ucu_w_3_x - axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x -
+            ucu_c_z*ucu_q_y
         )
         ucu_R_a_t_2 = (
-        axis_x_ucu_axes4_y*ucu_G_m_x + ucu_c_in_base_x*ucu_q_in_base_z - ucu_axis_z_y*ucu_mu_4_z -
-            ucu_c_in_base_z*ucu_q_in_base_x
+        ucu_c_z*ucu_q_x + ucu_mu_4_in_axes4_z*ucu_w_3_y - axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x -
+            ucu_c_x*ucu_q_z
         )
         ucu_R_a_t_3 = (
-        axis_x_ucu_axes4_z*ucu_G_m_x + ucu_c_in_base_y*ucu_q_in_base_x - ucu_axis_z_z*ucu_mu_4_z -
-            ucu_c_in_base_x*ucu_q_in_base_y
+        ucu_c_x*ucu_q_y + ucu_mu_4_in_axes4_z*ucu_w_3_z - axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x -
+            ucu_c_y*ucu_q_x
         )
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y
+        ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z
+        ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x
         ok = (
         ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
-            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ucu_c_in_base_x, ucu_c_in_base_y, ucu_c_in_base_z, ucu_R_a_t, ucu_R_a_t_2,
-            ucu_R_a_t_3,
+        ucu_c_x, ucu_c_y, ucu_c_z, ucu_R_a_t, ucu_R_a_t_2, ucu_R_a_t_3,
         ))
-        out_H[_H_ucu[0][leg]] = ucu_axis_z_x
-        out_H[_H_ucu[1][leg]] = ucu_axis_z_y
-        out_H[_H_ucu[2][leg]] = ucu_axis_z_z
-        out_H[_H_ucu[3][leg]] = ucu_H_a_3_t
-        out_H[_H_ucu[4][leg]] = ucu_H_a_3_t_2
-        out_H[_H_ucu[5][leg]] = ucu_H_a_3_t_3
-    total_ucu_x, total_ucu_y, total_ucu_z, total_ucu_x_2, total_ucu_y_2, total_ucu_z_2 = sums
+        # (ucu-w_3) force part of reciprocal wrench 3
+        out_H[_H_ucu[0][leg]] = ucu_w_3_x
+        out_H[_H_ucu[1][leg]] = ucu_w_3_y
+        out_H[_H_ucu[2][leg]] = ucu_w_3_z
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        out_H[_H_ucu[3][leg]] = ucu_H_a_3_x
+        out_H[_H_ucu[4][leg]] = ucu_H_a_3_y
+        out_H[_H_ucu[5][leg]] = ucu_H_a_3_z
+    R_t_t, R_t_t_2, R_t_t_3, R_a_ucu_x, R_a_ucu_y, R_a_ucu_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_ucu_x
-    R_t_y = f_p_y - total_ucu_y
-    R_t_z = f_p_z - total_ucu_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_ucu_x_2
-    R_a_y = mu_p_in_base_y - total_ucu_y_2
-    R_a_z = mu_p_in_base_z - total_ucu_z_2
+    R_a_x = R_a_ucu_x + mu_p_x
+    R_a_y = R_a_ucu_y + mu_p_y
+    R_a_z = R_a_ucu_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -4005,71 +4249,72 @@ def _run_inverse_kinematics(m, X):
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-root_1) amplitude, with the sign of the branch
         ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = -inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
+        # (ucu-q_1) displacement of joint 1
+        ucu_q_1 = atan2(-ucu_c_1, ucu_s_1)
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
         # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        ucu_c_2 = -inv_ucu_root_2*ucu_root_1
         # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z
+        # (ucu-q_2) displacement of joint 2
+        ucu_q_2 = atan2(-ucu_s_2, -ucu_c_2)
         # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_px_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_px_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_px_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r3_y = (
-        -ucu_c_2*ucu_end_p1_r0_z - ucu_s_2*(-ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1)
-        )
+        ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_s_2*(ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2)
+        # (ucu-py_4) component across the reference direction
+        ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1
         # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4
         # (ucu-root_4) amplitude, with the sign of the branch
         ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
-        # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
-        inv_ucu_root_4 = 1.0/ucu_root_4
-        # (ucu-q_1) displacement of joint 1
-        ucu_q_1 = atan2(ucu_c_1, ucu_s_1)
-        # (ucu-q_2) displacement of joint 2
-        ucu_q_2 = atan2(-ucu_s_2, ucu_c_2)
         # (ucu-q_4) displacement of joint 4
-        ucu_q_4 = atan2(-inv_ucu_root_4*ucu_end_p1_r3_y, inv_ucu_root_4*ucu_end_p1_r1_x)
+        inv_ucu_root_4 = 1.0/ucu_root_4
+        ucu_q_4 = atan2(-inv_ucu_root_4*ucu_px_4, inv_ucu_root_4*ucu_py_4)
         ok = (
         ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
             _TOLERANCE * _TOLERANCE * 1.0))
         )
+        # (ucu-q_1) displacement of joint 1
         out_q[_q_ucu[0][leg]] = ucu_q_1
+        # (ucu-q_2) displacement of joint 2
         out_q[_q_ucu[1][leg]] = ucu_q_2
+        # (ucu-q_3) displacement of joint 3
         out_q[_q_ucu[2][leg]] = ucu_root_2
+        # (ucu-q_4) displacement of joint 4
         out_q[_q_ucu[3][leg]] = ucu_q_4
     return ok, (out_q,)
 
@@ -4138,18 +4383,18 @@ def _run_joint_rates(m, X, V):
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
         # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
         # (ucu-px_1) component along the reference direction
         ucu_px_1 = (
         ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
@@ -4162,138 +4407,138 @@ def _run_joint_rates(m, X, V):
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-root_1) amplitude, with the sign of the branch
         ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = -inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
         # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        ucu_c_2 = -inv_ucu_root_2*ucu_root_1
         # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z
         # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_px_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_px_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_px_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
-        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
-        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2
+        ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2
+        # (ucu-py_4) component across the reference direction
+        ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1
         # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4
         # (ucu-root_4) amplitude, with the sign of the branch
         ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
         # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
         inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        ucu_c_4 = inv_ucu_root_4*ucu_px_4
         # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_c_2*ucu_c_4
-        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
-        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
-        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
-        ucu_w_1_t = ucu_s_2*ucu_s_4
-        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
-        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
-        axis_y_ucu_axes4_in_base_x = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
-            ucu_base_frame_xz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_y = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
-            ucu_base_frame_yz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_z = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
-            ucu_base_frame_zz*ucu_v_1_t_2
-        )
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
+        ucu_s_4 = inv_ucu_root_4*ucu_py_4
         # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_x = t_dot_x + omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
-        ucu_S_dot_y = t_dot_y + omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
-        ucu_S_dot_z = t_dot_z + omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
-        ucu_S_dot_r0_x = (
+        ucu_S_dot_x = t_dot_x + omega_y*ucu_q_z - omega_z*ucu_q_y
+        ucu_S_dot_y = t_dot_y + omega_z*ucu_q_x - omega_x*ucu_q_z
+        ucu_S_dot_z = t_dot_z + omega_x*ucu_q_y - omega_y*ucu_q_x
+        ucu_S_dot_t = (
         ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
             ucu_S_dot_z*ucu_base_frame_zx
         )
-        ucu_S_dot_r0_y = (
+        ucu_S_dot_t_2 = (
         ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
             ucu_S_dot_z*ucu_base_frame_zy
         )
-        ucu_S_dot_r0_z = (
+        ucu_S_dot_t_3 = (
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
-        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
-        # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = (ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)/ucu_v_1_r0_y
-        ucu_qd_4_t_2 = (
-        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
-            ucu_qd_4_t*(ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4))
-        )
-        # (ucu-nd_m1) rate of moment direction 1
-        ucu_nd_m1_t = (
-        ucu_end_p1_r3_x*(omega_x*(axis_y_ucu_axes4_in_base_y*ucu_axis_z_z -
-            axis_y_ucu_axes4_in_base_z*ucu_axis_z_y) +
-            omega_y*(axis_y_ucu_axes4_in_base_z*ucu_axis_z_x -
-            axis_y_ucu_axes4_in_base_x*ucu_axis_z_z) +
-            omega_z*(axis_y_ucu_axes4_in_base_x*ucu_axis_z_y -
-            axis_y_ucu_axes4_in_base_y*ucu_axis_z_x))
-        )
+        ucu_S_dot_t_4 = ucu_S_dot_t*ucu_s_1 - ucu_S_dot_t_2*ucu_c_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_3*ucu_s_2 - ucu_S_dot_t_4*ucu_c_2
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4
+        ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4
+        # (ucu-w_3) force part of reciprocal wrench 3
+        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
+        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
+        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
         # (ucu-qd_1) rate of joint 1
-        ucu_qd_1_t = (
-        omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z - (ucu_nd_m1_t +
-            ucu_qd_4_t*ucu_w_1_t_2 - ucu_end_p1_r3_x*ucu_qd_4_t_2*ucu_s_4)/ucu_end_p1_r5_x
+        ucu_qd_1 = (ucu_S_dot_t*ucu_c_1 + ucu_S_dot_t_2*ucu_s_1)/ucu_v_1_in_axes2_z
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_root_2*(ucu_S_dot_t_3*ucu_c_2 + ucu_S_dot_t_4*ucu_s_2 -
+            ucu_qd_1*(ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y))
+        )
+        # (ucu-qd_4) rate of joint 4
+        ucu_qd_4_t = ucu_s_2*ucu_s_4
+        ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1
+        ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1
+        axis_y_ucu_axes4_x = (
+        ucu_base_frame_xx*ucu_qd_4_t_2 + ucu_base_frame_xy*ucu_qd_4_t_3 +
+            ucu_base_frame_xz*ucu_e_1_in_axes4_y
+        )
+        axis_y_ucu_axes4_y = (
+        ucu_base_frame_yx*ucu_qd_4_t_2 + ucu_base_frame_yy*ucu_qd_4_t_3 +
+            ucu_base_frame_yz*ucu_e_1_in_axes4_y
+        )
+        axis_y_ucu_axes4_z = (
+        ucu_base_frame_zx*ucu_qd_4_t_2 + ucu_base_frame_zy*ucu_qd_4_t_3 +
+            ucu_base_frame_zz*ucu_e_1_in_axes4_y
+        )
+        ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 - ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_qd_4_t_5 = (
+        ucu_n_m1_in_axes4_x*(omega_x*(axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y)
+            + omega_y*(axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z) +
+            omega_z*(axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x))
+        )
+        ucu_qd_4 = (
+        omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z - (ucu_qd_4_t_5 +
+            ucu_qd_1*ucu_qd_4_t_4 - ucu_n_m1_in_axes4_x*ucu_qd_2*ucu_s_4)/ucu_end_p1_in_axes4_x
         )
         ok = (
         ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
-            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) > _TOLERANCE * 0.8))
         )
-        out_qd[_qd_ucu[0][leg]] = ucu_qd_4_t
-        out_qd[_qd_ucu[1][leg]] = ucu_qd_4_t_2
-        out_qd[_qd_ucu[2][leg]] = ucu_S_dot_r3_x
-        out_qd[_qd_ucu[3][leg]] = ucu_qd_1_t
+        # (ucu-qd_1) rate of joint 1
+        out_qd[_qd_ucu[0][leg]] = ucu_qd_1
+        # (ucu-qd_2) rate of joint 2
+        out_qd[_qd_ucu[1][leg]] = ucu_qd_2
+        # (ucu-qd_3) rate of joint 3
+        out_qd[_qd_ucu[2][leg]] = ucu_S_dot_in_axes2_x
+        # (ucu-qd_4) rate of joint 4
+        out_qd[_qd_ucu[3][leg]] = ucu_qd_4
     return ok, (out_qd,)
 
 
@@ -4374,18 +4619,18 @@ def _run_joint_accelerations(m, X, V, A):
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
         # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
         # (ucu-px_1) component along the reference direction
         ucu_px_1 = (
         ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
@@ -4398,233 +4643,240 @@ def _run_joint_accelerations(m, X, V, A):
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-root_1) amplitude, with the sign of the branch
         ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = -inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
         # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        ucu_c_2 = -inv_ucu_root_2*ucu_root_1
         # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z
         # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_px_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_px_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_px_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
-        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
-        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2
+        ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2
+        # (ucu-py_4) component across the reference direction
+        ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1
         # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4
         # (ucu-root_4) amplitude, with the sign of the branch
         ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
         # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
         inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        ucu_c_4 = inv_ucu_root_4*ucu_px_4
         # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_c_2*ucu_c_4
-        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
-        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
-        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
-        ucu_w_1_t = ucu_s_2*ucu_s_4
-        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
-        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
-        axis_y_ucu_axes4_in_base_x = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
-            ucu_base_frame_xz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_y = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
-            ucu_base_frame_yz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_z = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
-            ucu_base_frame_zz*ucu_v_1_t_2
-        )
-        axis_x_ucu_axes4_x = (
-        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
-        )
-        axis_x_ucu_axes4_y = (
-        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
-        )
-        axis_x_ucu_axes4_z = (
-        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
-        )
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
-        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
-        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
-        # (ucu-w_1) force part of reciprocal wrench 1
-        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
-        # (ucu-w_4) force part of reciprocal wrench 4
-        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        ucu_s_4 = inv_ucu_root_4*ucu_py_4
         # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
-        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
-        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x
         ucu_S_dot_x = t_dot_x + ucu_S_dot_t
         ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
         ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
-        ucu_S_dot_r0_x = (
+        ucu_S_dot_t_4 = (
         ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
             ucu_S_dot_z*ucu_base_frame_zx
         )
-        ucu_S_dot_r0_y = (
+        ucu_S_dot_t_5 = (
         ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
             ucu_S_dot_z*ucu_base_frame_zy
         )
-        ucu_S_dot_r0_z = (
+        ucu_S_dot_t_6 = (
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
-        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4
+        ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2
+        ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4
+        ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4
+        # (ucu-w_3) force part of reciprocal wrench 3
+        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
+        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
+        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
+        # (ucu-m1_w_4) moment part 1 of reciprocal wrench 4
+        ucu_m1_w_4 = -1.0/ucu_end_p1_in_axes4_x
+        # (ucu-qd_1) rate of joint 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1)
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
+            ucu_qd_1*ucu_v_1_in_axes2_y)
+        )
         # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
-        ucu_qd_4_t_2 = (
-        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
-            ucu_qd_4_t*ucu_v_1_r0_x)
+        ucu_qd_4_t = ucu_s_2*ucu_s_4
+        ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1
+        ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1
+        axis_y_ucu_axes4_x = (
+        ucu_base_frame_xx*ucu_qd_4_t_2 + ucu_base_frame_xy*ucu_qd_4_t_3 +
+            ucu_base_frame_xz*ucu_e_1_in_axes4_y
         )
-        # (ucu-omega_1) angular velocity of link 1
-        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
-        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
-        # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
-        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
-        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
-        # (ucu-bias) acceleration of the connection point at zero joint accelerations
-        ucu_bias_t = 2.0*ucu_S_dot_r3_x
-        ucu_bias_x = (
-        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
-            ucu_s_4*ucu_zeta_2_y)
+        axis_y_ucu_axes4_y = (
+        ucu_base_frame_yx*ucu_qd_4_t_2 + ucu_base_frame_yy*ucu_qd_4_t_3 +
+            ucu_base_frame_yz*ucu_e_1_in_axes4_y
         )
-        ucu_bias_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
+        axis_y_ucu_axes4_z = (
+        ucu_base_frame_zx*ucu_qd_4_t_2 + ucu_base_frame_zy*ucu_qd_4_t_3 +
+            ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
-        # (ucu-nd_m1) rate of moment direction 1
-        ucu_omega_tip_x = (
+        axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y
+        axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z
+        axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x
+        ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 - ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_omega_in_axes4_x = (
         axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        ucu_omega_tip_y = (
-        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
-            axis_y_ucu_axes4_in_base_z*omega_z
+        ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z
+        ucu_qd_4 = (
+        ucu_omega_in_axes4_z + ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x +
+            ucu_qd_1*ucu_qd_4_t_4 - ucu_n_m1_in_axes2_z*ucu_qd_2)
         )
-        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
-        ucu_nd_m1_x = (
-        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_2_r1_x
-        )
-        # (ucu-qd_1) rate of joint 1
-        ucu_qd_1_t = (
-        ucu_omega_tip_z - inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x +
-            ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
-        )
+        # (ucu-omega_1) angular velocity of link 1
+        ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2
+        ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1
+        # (ucu-omega_2) angular velocity of link 2
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4
+        ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
+        # (ucu-omega_4) angular velocity of link 4
+        ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
         # (ucu-a_p) acceleration of the connection point without its centripetal part
-        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y
-        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z
-        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x
+        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y
+        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z
+        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x
         # (ucu-S_ddot) acceleration of the connection point
         ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
         ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
         ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
-        # (ucu-rel) acceleration of the connection point left to the joint accelerations
-        ucu_rel_x = (
-        axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
-            axis_x_ucu_axes4_z*ucu_S_ddot_z - ucu_bias_x
-        )
-        ucu_rel_y = (
-        axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x + axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y +
-            axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z - ucu_bias_y
-        )
-        ucu_rel_z = (
-        ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y + ucu_S_ddot_z*ucu_axis_z_z +
-            ucu_root_2*(ucu_omega_2_r1_x*ucu_omega_2_r1_x + ucu_omega_2_r1_y*ucu_omega_2_r1_y)
-        )
-        # (ucu-omega_4) angular velocity of link 4
-        ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4
         # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
-        ucu_beta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t - ucu_zeta_2_t
+        ucu_beta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4 - ucu_zeta_2_t
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
+        ucu_bias_in_axes4_x = (
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
+        )
+        ucu_bias_in_axes4_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+            ucu_bias_t*ucu_omega_2_in_axes4_x
+        )
+        # (ucu-rel) acceleration of the connection point left to the joint accelerations
+        ucu_rel_in_axes4_x = (
+        axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
+            axis_x_ucu_axes4_z*ucu_S_ddot_z - ucu_bias_in_axes4_x
+        )
+        ucu_rel_in_axes4_y = (
+        axis_y_ucu_axes4_x*ucu_S_ddot_x + axis_y_ucu_axes4_y*ucu_S_ddot_y +
+            axis_y_ucu_axes4_z*ucu_S_ddot_z - ucu_bias_in_axes4_y
+        )
+        ucu_rel_in_axes4_z = (
+        ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y + ucu_S_ddot_z*ucu_w_3_z +
+            ucu_root_2*(ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y)
+        )
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_nd_m1_z = (
-        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_4_z
+        ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4
+        ucu_omega_in_axes4_y = (
+        axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
+        )
+        ucu_nd_m1_in_axes4_x = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
+        )
+        ucu_nd_m1_in_axes4_z = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
+            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
         )
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_omega_1_t_2*ucu_qd_4_t_2
+        ucu_nu_1_t = (
+        ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x -
+            ucu_end_p1_in_axes4_x*ucu_omega_1_in_axes2_y*ucu_qd_2
+        )
         ucu_nu_1_t_2 = (
-        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
-            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
-            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
+        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
+            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
+            (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
         )
         ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
         # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
         ucu_etad_1_t = (
-        ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
-            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x +
-            alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z)
+        ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x +
+            alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z)
         )
         ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
         # (ucu-qdd_1) acceleration of joint 1
-        ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4)
-        ucu_qdd_1_t_2 = (
-        inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 - ucu_c_4*ucu_rel_x)
+        ucu_qdd_1 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y + ucu_rel_in_axes4_x*ucu_s_4)
         )
-        ucu_qdd_1_t_3 = (
-        inv_ucu_end_p1_r5_x*(ucu_etad_1 + ucu_n_m1_t*ucu_qdd_1_t_2 + ucu_qdd_1_t*ucu_w_1_t_2)
+        # (ucu-qdd_2) acceleration of joint 2
+        ucu_qdd_2 = (
+        -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y + ucu_rel_in_axes4_y*ucu_s_4 -
+            ucu_c_4*ucu_rel_in_axes4_x)
+        )
+        # (ucu-qdd_4) acceleration of joint 4
+        ucu_qdd_4 = (
+        ucu_m1_w_4*(ucu_etad_1 + ucu_qd_4_t_4*ucu_qdd_1 - ucu_n_m1_in_axes2_z*ucu_qdd_2)
         )
         ok = (
         ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
-            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) > _TOLERANCE * 0.8))
         )
-        out_qdd[_qdd_ucu[0][leg]] = ucu_qdd_1_t
-        out_qdd[_qdd_ucu[1][leg]] = -ucu_qdd_1_t_2
-        out_qdd[_qdd_ucu[2][leg]] = ucu_rel_z
-        out_qdd[_qdd_ucu[3][leg]] = -ucu_qdd_1_t_3
+        # (ucu-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_ucu[0][leg]] = ucu_qdd_1
+        # (ucu-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_ucu[1][leg]] = ucu_qdd_2
+        # (ucu-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_ucu[2][leg]] = ucu_rel_in_axes4_z
+        # (ucu-qdd_4) acceleration of joint 4
+        out_qdd[_qdd_ucu[3][leg]] = ucu_qdd_4
     return ok, (out_qdd,)
 
 
@@ -4699,30 +4951,32 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        ucu_J_2_xy, ucu_J_2_xz, ucu_J_2_yz, ucu_J_4_xy, ucu_J_4_xz, ucu_J_4_yz, ucu_Sigma_2_xx,
-            ucu_Sigma_2_yy, ucu_Sigma_2_zz, ucu_Sigma_4_xx, ucu_Sigma_4_yy, ucu_Sigma_4_zz,
-            ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
-            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
-            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
-            ucu_branch_2, ucu_branch_4, ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y,
-            ucu_h_2_z, ucu_h_4_x, ucu_h_4_y, ucu_h_4_z, ucu_link4_mass,
-            ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
-            ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
-            ucu_platform_point_z,
+        ucu_J_2_in_spec2_xy, ucu_J_2_in_spec2_xz, ucu_J_2_in_spec2_yz, ucu_J_4_in_spec4_xy,
+            ucu_J_4_in_spec4_xz, ucu_J_4_in_spec4_yz, ucu_Sigma_2_in_axes2_xx,
+            ucu_Sigma_2_in_axes2_yy, ucu_Sigma_2_in_axes2_zz, ucu_Sigma_4_in_axes4_xx,
+            ucu_Sigma_4_in_axes4_yy, ucu_Sigma_4_in_axes4_zz, ucu_base_frame_xx,
+            ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy,
+            ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz,
+            ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2,
+            ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y, ucu_h_2_in_spec2_z,
+            ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y, ucu_h_4_in_spec4_z, ucu_link4_mass,
+            ucu_mu_2_t, ucu_mu_2_t_2, ucu_mu_2_t_3, ucu_platform_joint_axis_platform_x,
+            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
+            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
         # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
         # (ucu-px_1) component along the reference direction
         ucu_px_1 = (
         ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
@@ -4735,372 +4989,384 @@ def _run_legs(m, X, V, A):
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-root_1) amplitude, with the sign of the branch
         ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = -inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
         # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        ucu_c_2 = -inv_ucu_root_2*ucu_root_1
         # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z
         # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_px_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_px_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_px_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r1_y = -ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1
-        ucu_end_p1_r3_x = ucu_end_p1_r0_z*ucu_s_2 - ucu_c_2*ucu_end_p1_r1_y
-        ucu_end_p1_r3_y = -ucu_c_2*ucu_end_p1_r0_z - ucu_end_p1_r1_y*ucu_s_2
+        ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2
+        ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2
+        # (ucu-py_4) component across the reference direction
+        ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1
         # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4
         # (ucu-root_4) amplitude, with the sign of the branch
         ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
         # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
         inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        ucu_c_4 = inv_ucu_root_4*ucu_px_4
         # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_t = ucu_c_2*ucu_c_4
-        ucu_v_1_t_2 = ucu_c_2*ucu_s_4
-        ucu_v_1_t_3 = ucu_root_2*ucu_v_1_t_2
-        ucu_v_1_t_4 = ucu_root_2*ucu_v_1_t
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
-        ucu_w_1_t = ucu_s_2*ucu_s_4
-        axis_y_ucu_axes4_r4_x = -ucu_c_1*ucu_c_4 - ucu_s_1*ucu_w_1_t
-        axis_y_ucu_axes4_r4_y = ucu_c_4*ucu_s_1 - ucu_c_1*ucu_w_1_t
-        axis_y_ucu_axes4_in_base_x = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_xx + axis_y_ucu_axes4_r4_y*ucu_base_frame_xy +
-            ucu_base_frame_xz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_y = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_yx + axis_y_ucu_axes4_r4_y*ucu_base_frame_yy +
-            ucu_base_frame_yz*ucu_v_1_t_2
-        )
-        axis_y_ucu_axes4_in_base_z = (
-        axis_y_ucu_axes4_r4_x*ucu_base_frame_zx + axis_y_ucu_axes4_r4_y*ucu_base_frame_zy +
-            ucu_base_frame_zz*ucu_v_1_t_2
-        )
-        axis_x_ucu_axes4_x = (
-        axis_y_ucu_axes4_in_base_y*ucu_axis_z_z - axis_y_ucu_axes4_in_base_z*ucu_axis_z_y
-        )
-        axis_x_ucu_axes4_y = (
-        axis_y_ucu_axes4_in_base_z*ucu_axis_z_x - axis_y_ucu_axes4_in_base_x*ucu_axis_z_z
-        )
-        axis_x_ucu_axes4_z = (
-        axis_y_ucu_axes4_in_base_x*ucu_axis_z_y - axis_y_ucu_axes4_in_base_y*ucu_axis_z_x
-        )
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
-        ucu_end_p1_r5_y = ucu_c_4*ucu_end_p1_r1_x - ucu_end_p1_r3_y*ucu_s_4
-        # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_r0_x = ucu_c_4*ucu_v_1_t_3 - ucu_s_4*ucu_v_1_t_4
-        ucu_v_1_r0_y = ucu_c_4*ucu_v_1_t_4 + ucu_s_4*ucu_v_1_t_3
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_w_1_t_2 = ucu_end_p1_r3_x*ucu_v_1_t + ucu_end_p1_r5_x*ucu_s_2
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_n_m1_t = ucu_end_p1_r3_x*ucu_s_4
-        # (ucu-w_1) force part of reciprocal wrench 1
-        inv_ucu_v_1_r0_y = 1.0/ucu_v_1_r0_y
-        # (ucu-w_4) force part of reciprocal wrench 4
-        inv_ucu_end_p1_r5_x = 1.0/ucu_end_p1_r5_x
+        ucu_s_4 = inv_ucu_root_4*ucu_py_4
         # (ucu-S_dot) velocity of the connection point
-        ucu_S_dot_t = omega_y*ucu_q_in_base_z - omega_z*ucu_q_in_base_y
-        ucu_S_dot_t_2 = omega_z*ucu_q_in_base_x - omega_x*ucu_q_in_base_z
-        ucu_S_dot_t_3 = omega_x*ucu_q_in_base_y - omega_y*ucu_q_in_base_x
+        ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y
+        ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z
+        ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x
         ucu_S_dot_x = t_dot_x + ucu_S_dot_t
         ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2
         ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3
-        ucu_S_dot_r0_x = (
+        ucu_S_dot_t_4 = (
         ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
             ucu_S_dot_z*ucu_base_frame_zx
         )
-        ucu_S_dot_r0_y = (
+        ucu_S_dot_t_5 = (
         ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
             ucu_S_dot_z*ucu_base_frame_zy
         )
-        ucu_S_dot_r0_z = (
+        ucu_S_dot_t_6 = (
         ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz
         )
-        ucu_S_dot_r1_y = -ucu_S_dot_r0_x*ucu_s_1 - ucu_S_dot_r0_y*ucu_c_1
-        ucu_S_dot_r3_x = ucu_S_dot_r0_z*ucu_s_2 - ucu_S_dot_r1_y*ucu_c_2
+        ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1
+        ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2
+        # (ucu-v_1) velocity of the connection point per rate of joint 1
+        ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4
+        ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4
+        ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2
+        ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2
+        ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y
+        ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x
+        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
+        ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4
+        ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4
+        # (ucu-w_1) force part of reciprocal wrench 1
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4
+        # (ucu-w_3) force part of reciprocal wrench 3
+        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
+        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
+        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
+        # (ucu-m1_w_4) moment part 1 of reciprocal wrench 4
+        ucu_m1_w_4 = -1.0/ucu_end_p1_in_axes4_x
+        # (ucu-qd_1) rate of joint 1
+        inv_ucu_v_1_in_axes2_z = 1.0/ucu_v_1_in_axes2_z
+        ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 + ucu_S_dot_t_5*ucu_s_1)
+        # (ucu-qd_2) rate of joint 2
+        ucu_qd_2 = (
+        inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
+            ucu_qd_1*ucu_v_1_in_axes2_y)
+        )
         # (ucu-qd_4) rate of joint 4
-        ucu_qd_4_t = inv_ucu_v_1_r0_y*(ucu_S_dot_r0_y*ucu_s_1 - ucu_S_dot_r0_x*ucu_c_1)
-        ucu_qd_4_t_2 = (
-        inv_ucu_root_2*(-ucu_S_dot_r0_z*ucu_c_2 - ucu_S_dot_r1_y*ucu_s_2 -
-            ucu_qd_4_t*ucu_v_1_r0_x)
+        ucu_qd_4_t = ucu_s_2*ucu_s_4
+        ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1
+        ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1
+        axis_y_ucu_axes4_x = (
+        ucu_base_frame_xx*ucu_qd_4_t_2 + ucu_base_frame_xy*ucu_qd_4_t_3 +
+            ucu_base_frame_xz*ucu_e_1_in_axes4_y
         )
-        # (ucu-omega_1) angular velocity of link 1
-        ucu_omega_1_t = ucu_qd_4_t*ucu_s_2
-        ucu_omega_1_t_2 = ucu_c_2*ucu_qd_4_t
-        # (ucu-omega_2) angular velocity of link 2
-        ucu_omega_2_r1_x = ucu_qd_4_t_2*ucu_s_4 - ucu_c_4*ucu_omega_1_t_2
-        ucu_omega_2_r1_y = ucu_c_4*ucu_qd_4_t_2 + ucu_omega_1_t_2*ucu_s_4
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_x = ucu_omega_1_t_2*ucu_qd_4_t_2
-        ucu_zeta_2_y = ucu_omega_1_t*ucu_qd_4_t_2
-        # (ucu-W_2) centripetal tensor of link 2
-        ucu_W_2_t = ucu_omega_1_t*ucu_omega_1_t
-        ucu_W_2_t_2 = ucu_omega_1_t_2*ucu_omega_1_t_2
-        ucu_W_2_t_3 = ucu_qd_4_t_2*ucu_qd_4_t_2
-        ucu_W_2_xy = ucu_omega_1_t*ucu_omega_1_t_2
-        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ucu_zeta_2_t = ucu_c_4*ucu_zeta_2_y
-        # (ucu-W_2) centripetal tensor of link 2
-        ucu_W_2_t_4 = ucu_omega_2_r1_x*ucu_omega_2_r1_x
-        ucu_W_2_t_5 = ucu_omega_2_r1_y*ucu_omega_2_r1_y
-        ucu_W_2_xy_2 = ucu_omega_2_r1_x*ucu_omega_2_r1_y
-        # (ucu-bias) acceleration of the connection point at zero joint accelerations
-        ucu_bias_t = 2.0*ucu_S_dot_r3_x
-        ucu_bias_x = (
-        ucu_bias_t*ucu_omega_2_r1_y + ucu_root_2*(ucu_omega_1_t*ucu_omega_2_r1_x +
-            ucu_s_4*ucu_zeta_2_y)
+        axis_y_ucu_axes4_y = (
+        ucu_base_frame_yx*ucu_qd_4_t_2 + ucu_base_frame_yy*ucu_qd_4_t_3 +
+            ucu_base_frame_yz*ucu_e_1_in_axes4_y
         )
-        ucu_bias_y = (
-        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_t*ucu_omega_2_r1_y) - ucu_bias_t*ucu_omega_2_r1_x
+        axis_y_ucu_axes4_z = (
+        ucu_base_frame_zx*ucu_qd_4_t_2 + ucu_base_frame_zy*ucu_qd_4_t_3 +
+            ucu_base_frame_zz*ucu_e_1_in_axes4_y
         )
-        # (ucu-nd_m1) rate of moment direction 1
-        ucu_omega_tip_x = (
+        axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z - axis_y_ucu_axes4_z*ucu_w_3_y
+        axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x - axis_y_ucu_axes4_x*ucu_w_3_z
+        axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y - axis_y_ucu_axes4_y*ucu_w_3_x
+        ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 - ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x
+        ucu_omega_in_axes4_x = (
         axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y + axis_x_ucu_axes4_z*omega_z
         )
-        ucu_omega_tip_y = (
-        axis_y_ucu_axes4_in_base_x*omega_x + axis_y_ucu_axes4_in_base_y*omega_y +
-            axis_y_ucu_axes4_in_base_z*omega_z
+        ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z
+        ucu_qd_4 = (
+        ucu_omega_in_axes4_z + ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x +
+            ucu_qd_1*ucu_qd_4_t_4 - ucu_n_m1_in_axes2_z*ucu_qd_2)
         )
-        ucu_omega_tip_z = omega_x*ucu_axis_z_x + omega_y*ucu_axis_z_y + omega_z*ucu_axis_z_z
-        ucu_nd_m1_x = (
-        ucu_end_p1_r5_y*ucu_omega_tip_x - ucu_end_p1_r5_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_2_r1_x
-        )
-        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ucu_g_r1_x = ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x
-        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
-        ucu_g_r3_x = ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y
-        ucu_g_r3_y = -ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2
-        # (ucu-qd_1) rate of joint 1
-        ucu_qd_1_t = (
-        ucu_omega_tip_z - inv_ucu_end_p1_r5_x*(ucu_end_p1_r3_x*ucu_omega_tip_x +
-            ucu_qd_4_t*ucu_w_1_t_2 - ucu_n_m1_t*ucu_qd_4_t_2)
-        )
+        # (ucu-omega_1) angular velocity of link 1
+        ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2
+        ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1
+        # (ucu-omega_2) angular velocity of link 2
+        ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4
+        ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4
+        # (ucu-W_2) centripetal tensor of link 2
+        ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2
+        ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2
+        ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y
+        ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y
+        # (ucu-omega_4) angular velocity of link 4
+        ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4
+        # (ucu-W_4) centripetal tensor of link 4
+        ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z
+        ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z
         # (ucu-a_p) acceleration of the connection point without its centripetal part
-        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_in_base_z - alpha_z*ucu_q_in_base_y
-        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_in_base_x - alpha_x*ucu_q_in_base_z
-        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_in_base_y - alpha_y*ucu_q_in_base_x
+        ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y
+        ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z
+        ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x
         # (ucu-S_ddot) acceleration of the connection point
         ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2
         ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3
         ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t
-        ucu_S_ddot_tip_x = (
+        ucu_S_ddot_in_axes4_x = (
         axis_x_ucu_axes4_x*ucu_S_ddot_x + axis_x_ucu_axes4_y*ucu_S_ddot_y +
             axis_x_ucu_axes4_z*ucu_S_ddot_z
         )
-        ucu_S_ddot_tip_y = (
-        axis_y_ucu_axes4_in_base_x*ucu_S_ddot_x + axis_y_ucu_axes4_in_base_y*ucu_S_ddot_y +
-            axis_y_ucu_axes4_in_base_z*ucu_S_ddot_z
+        ucu_S_ddot_in_axes4_y = (
+        axis_y_ucu_axes4_x*ucu_S_ddot_x + axis_y_ucu_axes4_y*ucu_S_ddot_y +
+            axis_y_ucu_axes4_z*ucu_S_ddot_z
+        )
+        # (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4
+        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4
+        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
+        ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t
+        # (ucu-bias) acceleration of the connection point at zero joint accelerations
+        ucu_bias_t = 2.0*ucu_S_dot_in_axes2_x
+        ucu_bias_in_axes4_x = (
+        ucu_bias_t*ucu_omega_2_in_axes4_y + ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
+            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x)
+        )
+        ucu_bias_in_axes4_y = (
+        ucu_root_2*(ucu_zeta_2_t + ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) -
+            ucu_bias_t*ucu_omega_2_in_axes4_x
         )
         # (ucu-rel) acceleration of the connection point left to the joint accelerations
-        ucu_rel_x = ucu_S_ddot_tip_x - ucu_bias_x
-        ucu_rel_y = ucu_S_ddot_tip_y - ucu_bias_y
-        # (ucu-omega_4) angular velocity of link 4
-        ucu_omega_4_z = ucu_omega_1_t + ucu_qd_1_t
-        # (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        ucu_zeta_4_x = ucu_omega_2_r1_y*ucu_qd_1_t
-        # (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations
-        ucu_beta_4_x = ucu_zeta_4_x - ucu_zeta_2_t
+        ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x
+        ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y
         # (ucu-nd_m1) rate of moment direction 1
-        ucu_nd_m1_z = (
-        ucu_end_p1_r5_y*ucu_omega_tip_z - ucu_end_p1_r3_x*ucu_omega_tip_y -
-            ucu_end_p1_r5_y*ucu_omega_4_z
+        ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4
+        ucu_omega_in_axes4_y = (
+        axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y + axis_y_ucu_axes4_z*omega_z
+        )
+        ucu_nd_m1_in_axes4_x = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x - ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x
+        )
+        ucu_nd_m1_in_axes4_z = (
+        ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z - ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z
+            - ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y
         )
         # (ucu-nu_1) bias of the angular acceleration along moment direction 1
-        ucu_nu_1_t = ucu_beta_4_x*ucu_end_p1_r3_x + ucu_end_p1_r5_x*ucu_zeta_2_x
+        ucu_nu_1_t = (
+        ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x - ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x
+        )
         ucu_nu_1_t_2 = (
-        ucu_nd_m1_x*(ucu_omega_2_r1_x - ucu_omega_tip_x) + ucu_nd_m1_z*(ucu_omega_4_z -
-            ucu_omega_tip_z) + (ucu_omega_2_r1_y - ucu_omega_tip_y)*(ucu_end_p1_r3_x*ucu_omega_4_z
-            + ucu_end_p1_r5_x*ucu_omega_2_r1_x)
+        ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x - ucu_omega_in_axes4_x) +
+            ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z - ucu_omega_in_axes4_z) +
+            (ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z)
         )
         ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2
         # (ucu-etad_1) acceleration with which the joints turn along moment direction 1
         ucu_etad_1_t = (
-        ucu_end_p1_r3_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
-            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_r5_x*(alpha_x*ucu_axis_z_x +
-            alpha_y*ucu_axis_z_y + alpha_z*ucu_axis_z_z)
+        ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x + alpha_y*axis_x_ucu_axes4_y +
+            alpha_z*axis_x_ucu_axes4_z) - ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x +
+            alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z)
         )
         ucu_etad_1 = ucu_etad_1_t + ucu_nu_1
         # (ucu-qdd_1) acceleration of joint 1
-        ucu_qdd_1_t = inv_ucu_v_1_r0_y*(ucu_c_4*ucu_rel_y + ucu_rel_x*ucu_s_4)
-        ucu_qdd_1_t_2 = (
-        inv_ucu_root_2*(ucu_qdd_1_t*ucu_v_1_r0_x + ucu_rel_y*ucu_s_4 - ucu_c_4*ucu_rel_x)
+        ucu_qdd_1 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y + ucu_rel_in_axes4_x*ucu_s_4)
         )
-        # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
-        ucu_acc_4_x = (
-        ucu_S_ddot_tip_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
-            axis_x_ucu_axes4_z*gravity_z
-        )
-        ucu_acc_4_y = (
-        ucu_S_ddot_tip_y - axis_y_ucu_axes4_in_base_x*gravity_x -
-            axis_y_ucu_axes4_in_base_y*gravity_y - axis_y_ucu_axes4_in_base_z*gravity_z
-        )
-        ucu_acc_4_z = (
-        ucu_S_ddot_x*ucu_axis_z_x + ucu_S_ddot_y*ucu_axis_z_y + ucu_S_ddot_z*ucu_axis_z_z -
-            gravity_x*ucu_axis_z_x - gravity_y*ucu_axis_z_y - gravity_z*ucu_axis_z_z
+        # (ucu-qdd_2) acceleration of joint 2
+        ucu_qdd_2 = (
+        -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y + ucu_rel_in_axes4_y*ucu_s_4 -
+            ucu_c_4*ucu_rel_in_axes4_x)
         )
         # (ucu-alpha_1) angular acceleration of link 1
-        ucu_alpha_1_t = ucu_qdd_1_t*ucu_s_2
-        ucu_alpha_1_t_2 = ucu_c_2*ucu_qdd_1_t
+        ucu_alpha_1_in_axes2_x = ucu_qdd_1*ucu_s_2
+        ucu_alpha_1_in_axes2_y = ucu_c_2*ucu_qdd_1
         # (ucu-alpha_2) angular acceleration of link 2
-        ucu_alpha_2_x = ucu_alpha_1_t - ucu_zeta_2_x
-        ucu_alpha_2_y = -ucu_alpha_1_t_2 - ucu_zeta_2_y
-        # (ucu-alpha_4) angular acceleration of link 4
-        ucu_alpha_4_x = ucu_zeta_4_x + ucu_alpha_2_y*ucu_c_4 - ucu_qdd_1_t_2*ucu_s_4
-        ucu_alpha_4_y = (
-        -ucu_alpha_2_y*ucu_s_4 - ucu_c_4*ucu_qdd_1_t_2 - ucu_omega_2_r1_x*ucu_qd_1_t
-        )
-        ucu_alpha_4_z = (
-        ucu_alpha_2_x - inv_ucu_end_p1_r5_x*(ucu_etad_1 + ucu_n_m1_t*ucu_qdd_1_t_2 +
-            ucu_qdd_1_t*ucu_w_1_t_2)
-        )
-        # (ucu-W_4) centripetal tensor of link 4
-        ucu_W_4_t = ucu_omega_4_z*ucu_omega_4_z
-        ucu_W_4_xz = ucu_omega_2_r1_x*ucu_omega_4_z
-        ucu_W_4_yz = ucu_omega_2_r1_y*ucu_omega_4_z
-        # (ucu-B_4) acceleration tensor of link 4
-        ucu_B_4_xy = ucu_W_2_xy_2 - ucu_alpha_4_z
-        ucu_B_4_xz = ucu_W_4_xz + ucu_alpha_4_y
-        ucu_B_4_yx = ucu_W_2_xy_2 + ucu_alpha_4_z
-        ucu_B_4_yz = ucu_W_4_yz - ucu_alpha_4_x
-        ucu_B_4_zx = ucu_W_4_xz - ucu_alpha_4_y
-        ucu_B_4_zy = ucu_W_4_yz + ucu_alpha_4_x
-        # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
-        ucu_mu_4_x = (
-        ucu_B_4_yx*ucu_J_4_xy + ucu_B_4_zy*ucu_Sigma_4_yy + ucu_J_4_xz*(ucu_W_2_t_5 - ucu_W_4_t) +
-            ucu_acc_4_z*ucu_h_4_z - ucu_B_4_yz*ucu_Sigma_4_zz - ucu_B_4_zx*ucu_J_4_yz -
-            ucu_acc_4_y*ucu_h_4_x
-        )
-        ucu_mu_4_y = (
-        ucu_B_4_xz*ucu_Sigma_4_zz + ucu_B_4_zy*ucu_J_4_yz + ucu_acc_4_x*ucu_h_4_x -
-            ucu_B_4_xy*ucu_J_4_xz - ucu_B_4_zx*ucu_Sigma_4_xx - ucu_J_4_xy*(ucu_W_2_t_4 -
-            ucu_W_4_t) - ucu_acc_4_z*ucu_h_4_y
-        )
-        ucu_mu_4_z = (
-        ucu_B_4_xz*ucu_J_4_xz + ucu_B_4_yx*ucu_Sigma_4_xx + ucu_J_4_yz*(ucu_W_2_t_4 - ucu_W_2_t_5)
-            + ucu_acc_4_y*ucu_h_4_y - ucu_B_4_xy*ucu_Sigma_4_yy - ucu_B_4_yz*ucu_J_4_xy -
-            ucu_acc_4_x*ucu_h_4_z
-        )
+        ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x
+        ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz
         # (ucu-B_2) acceleration tensor of link 2
-        ucu_B_2_xy = ucu_qdd_1_t_2 - ucu_W_2_xy
-        ucu_B_2_yx = -ucu_W_2_xy - ucu_qdd_1_t_2
-        ucu_B_2_zx = ucu_zeta_2_y - ucu_alpha_2_y
-        ucu_B_2_zy = ucu_alpha_2_x - ucu_zeta_2_x
+        ucu_B_2_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2
+        ucu_B_2_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2
+        ucu_B_2_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_in_axes2_y
+        ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x
+        # (ucu-alpha_4) angular acceleration of link 4
+        ucu_alpha_4_in_axes4_x = (
+        ucu_zeta_4_in_axes4_x + ucu_alpha_2_in_axes2_y*ucu_c_4 + ucu_qdd_2*ucu_s_4
+        )
+        ucu_alpha_4_in_axes4_y = (
+        ucu_c_4*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_s_4 - ucu_omega_2_in_axes4_x*ucu_qd_4
+        )
+        ucu_alpha_4_in_axes4_z = (
+        ucu_alpha_2_in_axes2_x + ucu_m1_w_4*(ucu_etad_1 + ucu_qd_4_t_4*ucu_qdd_1 -
+            ucu_n_m1_in_axes2_z*ucu_qdd_2)
+        )
+        # (ucu-B_4) acceleration tensor of link 4
+        ucu_B_4_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z
+        ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y
+        ucu_B_4_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z
+        ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x
+        ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y
+        ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x
+        # (ucu-acc_4) acceleration of the reference point of link 4, less gravity
+        ucu_acc_4_in_axes4_x = (
+        ucu_S_ddot_in_axes4_x - axis_x_ucu_axes4_x*gravity_x - axis_x_ucu_axes4_y*gravity_y -
+            axis_x_ucu_axes4_z*gravity_z
+        )
+        ucu_acc_4_in_axes4_y = (
+        ucu_S_ddot_in_axes4_y - axis_y_ucu_axes4_x*gravity_x - axis_y_ucu_axes4_y*gravity_y -
+            axis_y_ucu_axes4_z*gravity_z
+        )
+        ucu_acc_4_in_axes4_z = (
+        ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y + ucu_S_ddot_z*ucu_w_3_z -
+            gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z
+        )
+        # (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        ucu_mu_4_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x
+        ucu_mu_4_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y
+        ucu_mu_4_t_3 = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z
+        ucu_mu_4_in_axes4_x = (
+        ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy + ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy +
+            ucu_J_4_in_spec4_xz*(ucu_mu_4_t_2 - ucu_mu_4_t_3) +
+            ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz
+            - ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz - ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x
+        )
+        ucu_mu_4_in_axes4_y = (
+        ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz + ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz +
+            ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x - ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz -
+            ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_mu_4_t -
+            ucu_mu_4_t_3) - ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y
+        )
+        ucu_mu_4_in_axes4_z = (
+        ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz + ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx +
+            ucu_J_4_in_spec4_yz*(ucu_mu_4_t - ucu_mu_4_t_2) +
+            ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy
+            - ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z
+        )
         # (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ucu_mu_2_x = (
-        ucu_B_2_yx*ucu_J_2_xy + ucu_B_2_zx*ucu_J_2_xz + ucu_B_2_zy*ucu_Sigma_2_yy +
-            ucu_Sigma_2_zz*ucu_alpha_1_t + ucu_g_r1_x*ucu_h_2_z + ucu_g_r3_y*ucu_h_2_y -
-            ucu_J_2_yz*(ucu_W_2_t_2 - ucu_W_2_t_3)
+        ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x
+        ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y
+        ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2
+        ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1
+        ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_mu_2_t_3*ucu_s_2
+        ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_t_7*ucu_s_2
+        ucu_mu_2_in_axes2_x = (
+        ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy + ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz +
+            ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y +
+            ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
+            ucu_mu_2_t_6)
         )
-        ucu_mu_2_y = (
-        ucu_B_2_xy*ucu_J_2_yz + ucu_g_r1_x*ucu_h_2_x - ucu_B_2_zx*ucu_Sigma_2_xx -
-            ucu_B_2_zy*ucu_J_2_xz - ucu_J_2_xy*(ucu_W_2_t - ucu_W_2_t_3) -
-            ucu_Sigma_2_zz*ucu_alpha_1_t_2 - ucu_g_r3_x*ucu_h_2_y
+        ucu_mu_2_in_axes2_y = (
+        ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y +
+            ucu_g_in_axes2_z*ucu_h_2_in_spec2_x - ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+            ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 -
+            ucu_mu_2_t_6) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y
         )
-        ucu_mu_2_z = (
-        ucu_B_2_yx*ucu_Sigma_2_xx + ucu_J_2_xy*ucu_alpha_1_t + ucu_J_2_yz*ucu_alpha_1_t_2 -
-            ucu_B_2_xy*ucu_Sigma_2_yy - ucu_J_2_xz*(ucu_W_2_t - ucu_W_2_t_2) -
-            ucu_g_r3_x*ucu_h_2_z - ucu_g_r3_y*ucu_h_2_x
+        ucu_mu_2_in_axes2_z = (
+        ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx + ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
+            ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
+            ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
+            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x
         )
         # (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        ucu_N_2_x = ucu_mu_2_x + ucu_mu_4_z
-        ucu_N_2_y = ucu_mu_2_y + ucu_c_4*ucu_mu_4_x - ucu_mu_4_y*ucu_s_4
-        ucu_N_2_z = ucu_mu_2_z + ucu_c_4*ucu_mu_4_y + ucu_mu_4_x*ucu_s_4
-        # (ucu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_G_t = inv_ucu_end_p1_r5_x*ucu_mu_4_z
-        ucu_G_t_2 = inv_ucu_root_2*(ucu_N_2_z + ucu_G_t*ucu_n_m1_t)
-        ucu_G_t_3 = (
-        inv_ucu_v_1_r0_y*(ucu_G_t*ucu_w_1_t_2 + ucu_G_t_2*ucu_v_1_r0_x + ucu_N_2_y*ucu_c_2 -
-            ucu_N_2_x*ucu_s_2)
+        ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z
+        ucu_N_2_in_axes2_y = (
+        ucu_mu_2_in_axes2_y + ucu_c_4*ucu_mu_4_in_axes4_x - ucu_mu_4_in_axes4_y*ucu_s_4
         )
+        ucu_N_2_in_axes2_z = (
+        ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_y + ucu_mu_4_in_axes4_x*ucu_s_4
+        )
+        # (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        ucu_G_m1 = ucu_m1_w_4*ucu_mu_4_in_axes4_z
         # (ucu-c) leg force on the platform without actuation and without the mass at the connection point
-        ucu_c_x = (
-        ucu_G_t_3*ucu_s_4 + ucu_h_4_y*(ucu_W_2_t_5 + ucu_W_4_t) - ucu_B_4_xy*ucu_h_4_z -
-            ucu_B_4_xz*ucu_h_4_x - ucu_G_t_2*ucu_c_4
+        ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z - ucu_G_m1*ucu_n_m1_in_axes2_z)
+        ucu_c_t_2 = (
+        inv_ucu_v_1_in_axes2_z*(ucu_c_t*ucu_v_1_in_axes2_y - ucu_G_m1*ucu_qd_4_t_4 -
+            ucu_N_2_in_axes2_x*ucu_s_2 - ucu_N_2_in_axes2_y*ucu_c_2)
         )
-        ucu_c_y = (
-        ucu_G_t_2*ucu_s_4 + ucu_G_t_3*ucu_c_4 + ucu_h_4_z*(ucu_W_2_t_4 + ucu_W_4_t) -
-            ucu_B_4_yx*ucu_h_4_y - ucu_B_4_yz*ucu_h_4_x
+        ucu_c_in_axes4_x = (
+        ucu_c_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_t_2 + ucu_mu_4_t_3) -
+            ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x -
+            ucu_c_4*ucu_c_t
         )
-        # (ucu-c_true) leg force on the platform without actuation, the last link's mass included
-        ucu_c_true_x = ucu_c_x - ucu_acc_4_x*ucu_link4_mass
-        ucu_c_true_y = ucu_c_y - ucu_acc_4_y*ucu_link4_mass
-        ucu_c_true_z = (
-        ucu_h_4_x*(ucu_W_2_t_4 + ucu_W_2_t_5) - ucu_B_4_zx*ucu_h_4_y - ucu_B_4_zy*ucu_h_4_z -
-            ucu_acc_4_z*ucu_link4_mass
+        ucu_c_in_axes4_y = (
+        ucu_c_4*ucu_c_t_2 + ucu_c_t*ucu_s_4 + ucu_h_4_in_spec4_z*(ucu_mu_4_t + ucu_mu_4_t_3) -
+            ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x
         )
-        ucu_c_true_in_base_x = (
-        axis_x_ucu_axes4_x*ucu_c_true_x + axis_y_ucu_axes4_in_base_x*ucu_c_true_y +
-            ucu_axis_z_x*ucu_c_true_z
-        )
-        ucu_c_true_in_base_y = (
-        axis_x_ucu_axes4_y*ucu_c_true_x + axis_y_ucu_axes4_in_base_y*ucu_c_true_y +
-            ucu_axis_z_y*ucu_c_true_z
-        )
-        ucu_c_true_in_base_z = (
-        axis_x_ucu_axes4_z*ucu_c_true_x + axis_y_ucu_axes4_in_base_z*ucu_c_true_y +
-            ucu_axis_z_z*ucu_c_true_z
-        )
-        # (ucu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        ucu_G_m_x = ucu_G_t*ucu_end_p1_r3_x
         # (ucu-c_m) moment of the leg on the platform without actuation
-        ucu_c_m_in_base_x = axis_x_ucu_axes4_x*ucu_G_m_x - ucu_axis_z_x*ucu_mu_4_z
-        ucu_c_m_in_base_y = axis_x_ucu_axes4_y*ucu_G_m_x - ucu_axis_z_y*ucu_mu_4_z
-        ucu_c_m_in_base_z = axis_x_ucu_axes4_z*ucu_G_m_x - ucu_axis_z_z*ucu_mu_4_z
+        ucu_c_m_in_axes4_x = -ucu_G_m1*ucu_n_m1_in_axes4_x
+        ucu_c_m_x = axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x - ucu_mu_4_in_axes4_z*ucu_w_3_x
+        ucu_c_m_y = axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x - ucu_mu_4_in_axes4_z*ucu_w_3_y
+        ucu_c_m_z = axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x - ucu_mu_4_in_axes4_z*ucu_w_3_z
+        # (ucu-c_true) leg force on the platform without actuation, the last link's mass included
+        ucu_c_true_in_axes4_x = ucu_c_in_axes4_x - ucu_acc_4_in_axes4_x*ucu_link4_mass
+        ucu_c_true_in_axes4_y = ucu_c_in_axes4_y - ucu_acc_4_in_axes4_y*ucu_link4_mass
+        ucu_c_true_in_axes4_z = (
+        ucu_h_4_in_spec4_x*(ucu_mu_4_t + ucu_mu_4_t_2) - ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y -
+            ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_acc_4_in_axes4_z*ucu_link4_mass
+        )
+        ucu_c_true_x = (
+        axis_x_ucu_axes4_x*ucu_c_true_in_axes4_x + axis_y_ucu_axes4_x*ucu_c_true_in_axes4_y +
+            ucu_c_true_in_axes4_z*ucu_w_3_x
+        )
+        ucu_c_true_y = (
+        axis_x_ucu_axes4_y*ucu_c_true_in_axes4_x + axis_y_ucu_axes4_y*ucu_c_true_in_axes4_y +
+            ucu_c_true_in_axes4_z*ucu_w_3_y
+        )
+        ucu_c_true_z = (
+        axis_x_ucu_axes4_z*ucu_c_true_in_axes4_x + axis_y_ucu_axes4_z*ucu_c_true_in_axes4_y +
+            ucu_c_true_in_axes4_z*ucu_w_3_z
+        )
         ok = (
         ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
-            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) > _TOLERANCE * 0.8))
         )
-        out_leg_force[_leg_force_ucu[0][leg]] = ucu_c_true_in_base_x
-        out_leg_force[_leg_force_ucu[1][leg]] = ucu_c_true_in_base_y
-        out_leg_force[_leg_force_ucu[2][leg]] = ucu_c_true_in_base_z
-        out_leg_force[_leg_force_ucu[3][leg]] = ucu_c_m_in_base_x
-        out_leg_force[_leg_force_ucu[4][leg]] = ucu_c_m_in_base_y
-        out_leg_force[_leg_force_ucu[5][leg]] = ucu_c_m_in_base_z
-        out_drive[_drive_ucu[0][leg]] = ucu_axis_z_x
-        out_drive[_drive_ucu[1][leg]] = ucu_axis_z_y
-        out_drive[_drive_ucu[2][leg]] = ucu_axis_z_z
+        # (ucu-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_ucu[0][leg]] = ucu_c_true_x
+        out_leg_force[_leg_force_ucu[1][leg]] = ucu_c_true_y
+        out_leg_force[_leg_force_ucu[2][leg]] = ucu_c_true_z
+        # (ucu-c_m) moment of the leg on the platform without actuation
+        out_leg_force[_leg_force_ucu[3][leg]] = ucu_c_m_x
+        out_leg_force[_leg_force_ucu[4][leg]] = ucu_c_m_y
+        out_leg_force[_leg_force_ucu[5][leg]] = ucu_c_m_z
+        # (ucu-w_3) force part of reciprocal wrench 3
+        out_drive[_drive_ucu[0][leg]] = ucu_w_3_x
+        out_drive[_drive_ucu[1][leg]] = ucu_w_3_y
+        out_drive[_drive_ucu[2][leg]] = ucu_w_3_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -5108,7 +5374,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -5148,21 +5417,23 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ucu_b_r0_x, ucu_b_r0_y, ucu_b_r0_z, ucu_base_frame_xx, ucu_base_frame_xy,
-            ucu_base_frame_xz, ucu_base_frame_yx, ucu_base_frame_yy, ucu_base_frame_yz,
-            ucu_base_frame_zx, ucu_base_frame_zy, ucu_base_frame_zz, ucu_base_point_x,
-            ucu_base_point_y, ucu_base_point_z, ucu_branch_1, ucu_branch_2, ucu_branch_4,
-            ucu_g_r0_x, ucu_g_r0_y, ucu_g_r0_z, ucu_h_2_x, ucu_h_2_y, ucu_h_2_z, ucu_h_4_x,
-            ucu_h_4_y, ucu_h_4_z, ucu_link2_mass, ucu_platform_joint_axis_platform_x,
-            ucu_platform_joint_axis_platform_y, ucu_platform_joint_axis_platform_z,
-            ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
+        ucu_base_frame_xx, ucu_base_frame_xy, ucu_base_frame_xz, ucu_base_frame_yx,
+            ucu_base_frame_yy, ucu_base_frame_yz, ucu_base_frame_zx, ucu_base_frame_zy,
+            ucu_base_frame_zz, ucu_base_point_x, ucu_base_point_y, ucu_base_point_z, ucu_branch_1,
+            ucu_branch_2, ucu_branch_4, ucu_h_2_in_spec2_x, ucu_h_2_in_spec2_y,
+            ucu_h_2_in_spec2_z, ucu_h_4_in_spec4_x, ucu_h_4_in_spec4_y, ucu_h_4_in_spec4_z,
+            ucu_link2_mass, ucu_mu_2_t, ucu_mu_2_t_2, ucu_mu_2_t_3,
+            ucu_platform_joint_axis_platform_x, ucu_platform_joint_axis_platform_y,
+            ucu_platform_joint_axis_platform_z, ucu_platform_point_x, ucu_platform_point_y,
+            ucu_platform_point_z, ucu_potential_t, ucu_potential_t_2, ucu_potential_t_3,
         ) = k
         # (ucu-S) from the base point to the connection point
         ucu_S_x = (
@@ -5189,71 +5460,70 @@ def _run_potential(m, X):
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-root_1) amplitude, with the sign of the branch
         ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = -inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
         # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        ucu_c_2 = -inv_ucu_root_2*ucu_root_1
         # (ucu-s_2) sine of the angle of joint 2 from its reference direction
-        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_t
+        ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z
         # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_px_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_px_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_px_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r3_y = (
-        -ucu_c_2*ucu_end_p1_r0_z - ucu_s_2*(-ucu_c_1*ucu_end_p1_r0_y - ucu_end_p1_r0_x*ucu_s_1)
-        )
+        ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_s_2*(ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2)
+        # (ucu-py_4) component across the reference direction
+        ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1
         # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4
         # (ucu-root_4) amplitude, with the sign of the branch
         ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
         # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
         inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        ucu_c_4 = inv_ucu_root_4*ucu_px_4
         # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
-        # (ucu-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ucu_g_r1_y = -ucu_c_1*ucu_g_r0_y - ucu_g_r0_x*ucu_s_1
+        ucu_s_4 = inv_ucu_root_4*ucu_py_4
         # (potential) potential energy
-        ucu_b_r1_y = -ucu_b_r0_x*ucu_s_1 - ucu_b_r0_y*ucu_c_1
-        ucu_potential_t = (
-        (ucu_g_r0_y*ucu_s_1 - ucu_c_1*ucu_g_r0_x)*(ucu_h_2_y + ucu_c_4*ucu_h_4_z +
-            ucu_h_4_y*ucu_s_4 + ucu_link2_mass*(ucu_b_r0_y*ucu_s_1 - ucu_b_r0_x*ucu_c_1)) +
-            (-ucu_c_2*ucu_g_r0_z - ucu_g_r1_y*ucu_s_2)*(ucu_c_4*ucu_h_4_y +
-            ucu_link2_mass*(-ucu_b_r0_z*ucu_c_2 - ucu_b_r1_y*ucu_s_2) - ucu_h_2_z -
-            ucu_h_4_z*ucu_s_4) + (ucu_g_r0_z*ucu_s_2 - ucu_c_2*ucu_g_r1_y)*(ucu_h_2_x + ucu_h_4_x
-            + ucu_link2_mass*(ucu_b_r0_z*ucu_s_2 - ucu_b_r1_y*ucu_c_2))
+        ucu_potential_t_4 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1
+        ucu_potential_t_5 = ucu_c_1*ucu_potential_t_2 - ucu_potential_t*ucu_s_1
+        ucu_potential_t_6 = (
+        (ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1)*(ucu_h_2_in_spec2_y +
+            ucu_c_4*ucu_h_4_in_spec4_z + ucu_h_4_in_spec4_y*ucu_s_4 +
+            ucu_link2_mass*(ucu_c_1*ucu_potential_t + ucu_potential_t_2*ucu_s_1)) +
+            (ucu_c_2*ucu_mu_2_t_3 - ucu_potential_t_4*ucu_s_2)*(ucu_c_4*ucu_h_4_in_spec4_y +
+            ucu_link2_mass*(ucu_c_2*ucu_potential_t_3 - ucu_potential_t_5*ucu_s_2) -
+            ucu_h_2_in_spec2_z - ucu_h_4_in_spec4_z*ucu_s_4) + (ucu_c_2*ucu_potential_t_4 +
+            ucu_mu_2_t_3*ucu_s_2)*(ucu_h_2_in_spec2_x + ucu_h_4_in_spec4_x +
+            ucu_link2_mass*(ucu_c_2*ucu_potential_t_5 + ucu_potential_t_3*ucu_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
@@ -5261,11 +5531,12 @@ def _run_potential(m, X):
             _TOLERANCE * _TOLERANCE * 1.0))
         )
         sums = m.added(sums, leg, (
-        ucu_potential_t,
+        ucu_potential_t_6,
         ))
-    total_ucu, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_ucu
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -5275,7 +5546,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -5318,6 +5589,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -5330,18 +5602,18 @@ def _run_condition(m, X):
             ucu_platform_point_x, ucu_platform_point_y, ucu_platform_point_z,
         ) = k
         # (ucu-S) from the base point to the connection point
-        ucu_q_in_base_x = (
+        ucu_q_x = (
         R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y + R_xz*ucu_platform_point_z
         )
-        ucu_q_in_base_y = (
+        ucu_q_y = (
         R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y + R_yz*ucu_platform_point_z
         )
-        ucu_q_in_base_z = (
+        ucu_q_z = (
         R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y + R_zz*ucu_platform_point_z
         )
-        ucu_S_x = t_x + ucu_q_in_base_x - ucu_base_point_x
-        ucu_S_y = t_y + ucu_q_in_base_y - ucu_base_point_y
-        ucu_S_z = t_z + ucu_q_in_base_z - ucu_base_point_z
+        ucu_S_x = t_x + ucu_q_x - ucu_base_point_x
+        ucu_S_y = t_y + ucu_q_y - ucu_base_point_y
+        ucu_S_z = t_z + ucu_q_z - ucu_base_point_z
         # (ucu-px_1) component along the reference direction
         ucu_px_1 = (
         ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx + ucu_S_z*ucu_base_frame_zx
@@ -5354,113 +5626,115 @@ def _run_condition(m, X):
         ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1
         # (ucu-root_1) amplitude, with the sign of the branch
         ucu_root_1 = ucu_branch_1*sqrt(ucu_rho2_1)
+        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ucu_root_1 = 1.0/ucu_root_1
+        ucu_c_1 = -inv_ucu_root_1*ucu_py_1
+        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
+        ucu_s_1 = inv_ucu_root_1*ucu_px_1
         # (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ucu_xi_1_t = (
+        ucu_xi_1_in_axes1_z = (
         ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz + ucu_S_z*ucu_base_frame_zz
         )
         # (ucu-rho2_2) squared amplitude
-        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_t*ucu_xi_1_t
+        ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z
         # (ucu-root_2) amplitude, with the sign of the branch
         ucu_root_2 = ucu_branch_2*sqrt(ucu_rho2_2)
         # (ucu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ucu_root_2 = 1.0/ucu_root_2
-        ucu_c_2 = inv_ucu_root_2*ucu_root_1
+        ucu_c_2 = -inv_ucu_root_2*ucu_root_1
         # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r0_x = (
+        ucu_px_4_t = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx + R_yx*ucu_base_frame_yx +
             R_zx*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx +
             R_yy*ucu_base_frame_yx + R_zy*ucu_base_frame_zx) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx + R_yz*ucu_base_frame_yx +
             R_zz*ucu_base_frame_zx)
         )
-        ucu_end_p1_r0_y = (
+        ucu_px_4_t_2 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy + R_yx*ucu_base_frame_yy +
             R_zx*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy +
             R_yy*ucu_base_frame_yy + R_zy*ucu_base_frame_zy) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy + R_yz*ucu_base_frame_yy +
             R_zz*ucu_base_frame_zy)
         )
-        ucu_end_p1_r0_z = (
+        ucu_px_4_t_3 = (
         ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz + R_yx*ucu_base_frame_yz +
             R_zx*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz +
             R_yy*ucu_base_frame_yz + R_zy*ucu_base_frame_zz) +
             ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz + R_yz*ucu_base_frame_yz +
             R_zz*ucu_base_frame_zz)
         )
-        # (ucu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ucu_root_1 = 1.0/ucu_root_1
-        ucu_c_1 = inv_ucu_root_1*ucu_py_1
-        # (ucu-s_1) sine of the angle of joint 1 from its reference direction
-        ucu_s_1 = inv_ucu_root_1*ucu_px_1
-        # (ucu-px_4) component along the reference direction
-        ucu_end_p1_r1_x = ucu_end_p1_r0_y*ucu_s_1 - ucu_c_1*ucu_end_p1_r0_x
-        ucu_end_p1_r3_y = (
-        -ucu_c_2*ucu_end_p1_r0_z - inv_ucu_root_2*ucu_xi_1_t*(-ucu_c_1*ucu_end_p1_r0_y -
-            ucu_end_p1_r0_x*ucu_s_1)
+        ucu_px_4 = (
+        ucu_c_2*ucu_px_4_t_3 + inv_ucu_root_2*ucu_xi_1_in_axes1_z*(ucu_px_4_t*ucu_s_1 -
+            ucu_c_1*ucu_px_4_t_2)
         )
+        # (ucu-py_4) component across the reference direction
+        ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1
         # (ucu-rho2_4) squared amplitude
-        ucu_rho2_4 = ucu_end_p1_r1_x*ucu_end_p1_r1_x + ucu_end_p1_r3_y*ucu_end_p1_r3_y
+        ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4
         # (ucu-root_4) amplitude, with the sign of the branch
         ucu_root_4 = ucu_branch_4*sqrt(ucu_rho2_4)
         # (ucu-c_4) cosine of the angle of joint 4 from its reference direction
         inv_ucu_root_4 = 1.0/ucu_root_4
-        ucu_c_4 = inv_ucu_root_4*ucu_end_p1_r3_y
+        ucu_c_4 = inv_ucu_root_4*ucu_px_4
         # (ucu-s_4) sine of the angle of joint 4 from its reference direction
-        ucu_s_4 = inv_ucu_root_4*ucu_end_p1_r1_x
-        # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_axis_z_x = inv_ucu_root_2*ucu_S_x
-        ucu_axis_z_y = inv_ucu_root_2*ucu_S_y
-        ucu_axis_z_z = inv_ucu_root_2*ucu_S_z
-        # (ucu-n_m1) direction 1 of the moment that the platform joint transmits
-        ucu_end_p1_r5_x = ucu_c_4*ucu_end_p1_r3_y + ucu_end_p1_r1_x*ucu_s_4
+        ucu_s_4 = inv_ucu_root_4*ucu_py_4
         # (ucu-v_1) velocity of the connection point per rate of joint 1
-        ucu_v_1_r0_y = ucu_c_2*ucu_c_4*ucu_c_4*ucu_root_2 + ucu_c_2*ucu_root_2*ucu_s_4*ucu_s_4
-        # (ucu-H_a_3) moment of the column's unit force about the platform origin
-        ucu_H_a_3_t = ucu_axis_z_z*ucu_q_in_base_y - ucu_axis_z_y*ucu_q_in_base_z
-        ucu_H_a_3_t_2 = ucu_axis_z_x*ucu_q_in_base_z - ucu_axis_z_z*ucu_q_in_base_x
-        ucu_H_a_3_t_3 = ucu_axis_z_y*ucu_q_in_base_x - ucu_axis_z_x*ucu_q_in_base_y
-        # (spread) rms distance of the platform points from their centroid
-        ucu_spread_t = b_c_x - ucu_platform_point_x
-        ucu_spread_t_2 = b_c_y - ucu_platform_point_y
-        ucu_spread_t_3 = b_c_z - ucu_platform_point_z
-        ucu_spread_t_4 = (
-        ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 + ucu_spread_t_3*ucu_spread_t_3
+        ucu_v_1_in_axes2_z = (
+        -ucu_c_2*ucu_c_4*ucu_c_4*ucu_root_2 - ucu_c_2*ucu_root_2*ucu_s_4*ucu_s_4
         )
-        # (ucu-rho2_1) squared amplitude
-        ucu_pivot_size = abs(ucu_rho2_1)
-        # (ucu-rho2_2) squared amplitude
-        ucu_pivot_size_2 = abs(ucu_rho2_2)
-        # (ucu-rho2_4) squared amplitude
-        ucu_pivot_size_3 = abs(ucu_rho2_4)
         # (ucu-w_1) force part of reciprocal wrench 1
-        ucu_pivot_size_4 = abs(ucu_end_p1_r5_x)
-        ucu_pivot_size_5 = abs(ucu_root_2)
-        ucu_pivot_size_6 = abs(ucu_v_1_r0_y)
+        ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4
+        # (ucu-w_3) force part of reciprocal wrench 3
+        ucu_w_3_x = inv_ucu_root_2*ucu_S_x
+        ucu_w_3_y = inv_ucu_root_2*ucu_S_y
+        ucu_w_3_z = inv_ucu_root_2*ucu_S_z
         # (ucu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        ucu_pivot_size = abs(ucu_rho2_1)
+        ucu_pivot_size_2 = abs(ucu_rho2_2)
+        ucu_pivot_size_3 = abs(ucu_rho2_4)
+        ucu_pivot_size_4 = abs(ucu_end_p1_in_axes4_x)
+        ucu_pivot_size_5 = abs(ucu_root_2)
+        ucu_pivot_size_6 = abs(ucu_v_1_in_axes2_z)
         ucu_least_pivots = (
         least(least(least(least(least(1.25*sqrt(ucu_pivot_size), 1.25*sqrt(ucu_pivot_size_2)),
             sqrt(ucu_pivot_size_3)), ucu_pivot_size_4), 1.25*ucu_pivot_size_5),
             1.25*ucu_pivot_size_6)
         )
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y
+        ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z
+        ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x
+        # (spread) rms distance of the platform points from their centroid
+        ucu_spread_t = b_c_in_platform_x - ucu_platform_point_x
+        ucu_spread_t_2 = b_c_in_platform_y - ucu_platform_point_y
+        ucu_spread_t_3 = b_c_in_platform_z - ucu_platform_point_z
+        ucu_spread_t_4 = (
+        ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 + ucu_spread_t_3*ucu_spread_t_3
+        )
         clear = (
         clear & m.every(leg, (abs(ucu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ucu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ucu_rho2_4) >
-            _TOLERANCE * _TOLERANCE * 1.0) & (abs(-ucu_end_p1_r5_x) > _TOLERANCE * 1.0) &
-            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_r0_y) > _TOLERANCE * 0.8))
+            _TOLERANCE * _TOLERANCE * 1.0) & (abs(ucu_end_p1_in_axes4_x) > _TOLERANCE * 1.0) &
+            (abs(ucu_root_2) > _TOLERANCE * 0.8) & (abs(ucu_v_1_in_axes2_z) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         ucu_spread_t_4,
         ))
-        out_H[_H_ucu[0][leg]] = ucu_axis_z_x
-        out_H[_H_ucu[1][leg]] = ucu_axis_z_y
-        out_H[_H_ucu[2][leg]] = ucu_axis_z_z
-        out_H[_H_ucu[3][leg]] = ucu_H_a_3_t
-        out_H[_H_ucu[4][leg]] = ucu_H_a_3_t_2
-        out_H[_H_ucu[5][leg]] = ucu_H_a_3_t_3
+        # (ucu-w_3) force part of reciprocal wrench 3
+        out_H[_H_ucu[0][leg]] = ucu_w_3_x
+        out_H[_H_ucu[1][leg]] = ucu_w_3_y
+        out_H[_H_ucu[2][leg]] = ucu_w_3_z
+        # (ucu-H_a_3) moment of the column's unit force about the platform origin
+        out_H[_H_ucu[3][leg]] = ucu_H_a_3_x
+        out_H[_H_ucu[4][leg]] = ucu_H_a_3_y
+        out_H[_H_ucu[5][leg]] = ucu_H_a_3_z
+        # (ucu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_ucu[0][leg]] = ucu_least_pivots
-    total_ucu, = sums
+    spread_ucu, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_ucu)
+    spread = spread_t*sqrt(spread_ucu)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

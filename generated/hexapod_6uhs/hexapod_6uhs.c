@@ -540,20 +540,20 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_uhs = 0;
-    real total_uhs_x = 0;
-    real total_uhs_y = 0;
-    real total_uhs_z = 0;
-    real total_uhs_xx = 0;
-    real total_uhs_xy = 0;
-    real total_uhs_xz = 0;
-    real total_uhs_yy = 0;
-    real total_uhs_yz = 0;
-    real total_uhs_zz = 0;
-    real total_uhs_x_2 = 0;
-    real total_uhs_y_2 = 0;
-    real total_uhs_z_2 = 0;
-    real total_uhs_2 = 0;
+    real m_star_uhs = 0;
+    real h_star_uhs_in_platform_x = 0;
+    real h_star_uhs_in_platform_y = 0;
+    real h_star_uhs_in_platform_z = 0;
+    real J_star_uhs_in_platform_xx = 0;
+    real J_star_uhs_in_platform_xy = 0;
+    real J_star_uhs_in_platform_xz = 0;
+    real J_star_uhs_in_platform_yy = 0;
+    real J_star_uhs_in_platform_yz = 0;
+    real J_star_uhs_in_platform_zz = 0;
+    real b_c_uhs_in_platform_x = 0;
+    real b_c_uhs_in_platform_y = 0;
+    real b_c_uhs_in_platform_z = 0;
+    real legs_size_uhs = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -636,52 +636,90 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real uhs_size_t = R(0.6400000000000001) + uhs_joint3_offset_x*uhs_joint3_offset_x +
             uhs_joint3_pitch*uhs_joint3_pitch;
         const real uhs_size = root(uhs_size_t);
-        /* (uhs-q_3) displacement of joint 3 */
-        const real inv_uhs_joint3_pitch = 1/uhs_joint3_pitch;
-        /* (uhs-rho_tip_3) connection point to the centre of mass of link 3 */
-        const real uhs_rho_tip_3_x = uhs_link3_centre_of_mass_x - uhs_platform_joint_offset_x;
-        /* (uhs-h_3) first moment of link 3 about the connection point */
-        const real uhs_h_3_x = uhs_link3_mass*uhs_rho_tip_3_x;
-        const real uhs_h_3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass;
-        const real uhs_h_3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass;
-        /* (uhs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real uhs_d_phi_3_t = inv_uhs_joint3_pitch*uhs_h_3_z;
-        const real uhs_d_phi_3_t_2 = inv_uhs_joint3_pitch*uhs_h_3_y;
-        /* (uhs-J_3) inertia tensor of link 3 about the connection point */
-        const real uhs_J_3_t = uhs_rho_tip_3_x*uhs_rho_tip_3_x;
-        const real uhs_J_3_t_2 = uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_y;
-        const real uhs_J_3_t_3 = uhs_link3_centre_of_mass_z*uhs_link3_centre_of_mass_z;
-        const real uhs_J_3_t_4 = uhs_J_3_t + uhs_J_3_t_2 + uhs_J_3_t_3;
-        const real uhs_J_3_xx = uhs_link3_inertia_xx - uhs_link3_mass*(uhs_J_3_t - uhs_J_3_t_4);
-        const real uhs_J_3_xy = uhs_link3_inertia_xy -
-            uhs_link3_centre_of_mass_y*uhs_link3_mass*uhs_rho_tip_3_x;
-        const real uhs_J_3_xz = uhs_link3_inertia_xz -
-            uhs_link3_centre_of_mass_z*uhs_link3_mass*uhs_rho_tip_3_x;
-        const real uhs_J_3_yy = uhs_link3_inertia_yy - uhs_link3_mass*(uhs_J_3_t_2 - uhs_J_3_t_4);
-        const real uhs_J_3_yz = uhs_link3_inertia_yz -
-            uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass;
-        const real uhs_J_3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 - uhs_J_3_t_4);
+        /* (uhs-h_2) first moment of link 2 about the origin of link 2 */
+        const real uhs_h_2_in_spec2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass;
+        const real uhs_h_2_in_spec2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass;
+        const real uhs_h_2_in_spec2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass;
         /* (uhs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real uhs_J_2_t = uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_x;
         const real uhs_J_2_t_2 = uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_y;
         const real uhs_J_2_t_3 = uhs_link2_centre_of_mass_z*uhs_link2_centre_of_mass_z;
         const real uhs_J_2_t_4 = uhs_J_2_t + uhs_J_2_t_2 + uhs_J_2_t_3;
-        const real uhs_J_2_xx = uhs_link2_inertia_xx - uhs_link2_mass*(uhs_J_2_t - uhs_J_2_t_4);
-        const real uhs_J_2_xy = uhs_link2_inertia_xy -
+        const real uhs_J_2_in_spec2_xx = uhs_link2_inertia_xx - uhs_link2_mass*(uhs_J_2_t -
+            uhs_J_2_t_4);
+        const real uhs_J_2_in_spec2_xy = uhs_link2_inertia_xy -
             uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_y*uhs_link2_mass;
-        const real uhs_J_2_xz = uhs_link2_inertia_xz -
+        const real uhs_J_2_in_spec2_xz = uhs_link2_inertia_xz -
             uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_z*uhs_link2_mass;
-        const real uhs_J_2_yy = uhs_link2_inertia_yy - uhs_link2_mass*(uhs_J_2_t_2 - uhs_J_2_t_4);
-        const real uhs_J_2_yz = uhs_link2_inertia_yz -
+        const real uhs_J_2_in_spec2_yy = uhs_link2_inertia_yy - uhs_link2_mass*(uhs_J_2_t_2 -
+            uhs_J_2_t_4);
+        const real uhs_J_2_in_spec2_yz = uhs_link2_inertia_yz -
             uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_z*uhs_link2_mass;
-        const real uhs_J_2_zz = uhs_link2_inertia_zz - uhs_link2_mass*(uhs_J_2_t_3 - uhs_J_2_t_4);
+        const real uhs_J_2_in_spec2_zz = uhs_link2_inertia_zz - uhs_link2_mass*(uhs_J_2_t_3 -
+            uhs_J_2_t_4);
+        /* (uhs-rho_tip_3) connection point to the centre of mass of link 3 */
+        const real uhs_rho_tip_3_in_spec3_x = uhs_link3_centre_of_mass_x -
+            uhs_platform_joint_offset_x;
+        /* (uhs-h_3) first moment of link 3 about the connection point */
+        const real inv_uhs_joint3_pitch = 1/uhs_joint3_pitch;
+        const real uhs_h_3_in_spec3_x = uhs_link3_mass*uhs_rho_tip_3_in_spec3_x;
+        const real uhs_h_3_in_spec3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass;
+        const real uhs_h_3_in_spec3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass;
+        /* (uhs-J_3) inertia tensor of link 3 about the connection point */
+        const real uhs_J_3_t = uhs_rho_tip_3_in_spec3_x*uhs_rho_tip_3_in_spec3_x;
+        const real uhs_J_3_t_2 = uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_y;
+        const real uhs_J_3_t_3 = uhs_link3_centre_of_mass_z*uhs_link3_centre_of_mass_z;
+        const real uhs_J_3_t_4 = uhs_J_3_t + uhs_J_3_t_2 + uhs_J_3_t_3;
+        const real uhs_J_3_in_spec3_xx = uhs_link3_inertia_xx - uhs_link3_mass*(uhs_J_3_t -
+            uhs_J_3_t_4);
+        const real uhs_J_3_in_spec3_xy = uhs_link3_inertia_xy -
+            uhs_link3_centre_of_mass_y*uhs_link3_mass*uhs_rho_tip_3_in_spec3_x;
+        const real uhs_J_3_in_spec3_xz = uhs_link3_inertia_xz -
+            uhs_link3_centre_of_mass_z*uhs_link3_mass*uhs_rho_tip_3_in_spec3_x;
+        const real uhs_J_3_in_spec3_yy = uhs_link3_inertia_yy - uhs_link3_mass*(uhs_J_3_t_2 -
+            uhs_J_3_t_4);
+        const real uhs_J_3_in_spec3_yz = uhs_link3_inertia_yz -
+            uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass;
+        const real uhs_J_3_in_spec3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 -
+            uhs_J_3_t_4);
+        /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
+        const real uhs_bias_t = 2*uhs_joint3_pitch;
+        /* (uhs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real uhs_d_phi_3_t = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_z;
+        const real uhs_d_phi_3_in_axes3_yz = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_y;
         /* (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real uhs_Jc_2_xx = uhs_J_2_xx + uhs_J_3_xx;
+        const real uhs_Jc_2_in_axes2_xx = uhs_J_2_in_spec2_xx + uhs_J_3_in_spec3_xx;
+        /* (uhs-trace_J_3) half the trace of that inertia tensor */
+        const real uhs_trace_J_3 = R(0.5)*uhs_J_3_in_spec3_xx + R(0.5)*uhs_J_3_in_spec3_yy +
+            R(0.5)*uhs_J_3_in_spec3_zz;
+        /* (uhs-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real uhs_Sigma_3_in_axes3_xx = uhs_trace_J_3 - uhs_J_3_in_spec3_yy;
+        const real uhs_Sigma_3_in_axes3_yy = uhs_trace_J_3 - uhs_J_3_in_spec3_zz;
+        const real uhs_Sigma_3_in_axes3_zz = uhs_trace_J_3 - uhs_J_3_in_spec3_xx;
+        /* (uhs-trace_J_2) half the trace of that inertia tensor */
+        const real uhs_trace_J_2 = R(0.5)*uhs_J_2_in_spec2_xx + R(0.5)*uhs_J_2_in_spec2_yy +
+            R(0.5)*uhs_J_2_in_spec2_zz;
+        /* (uhs-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real uhs_Sigma_2_in_axes2_xx = uhs_trace_J_2 - uhs_J_2_in_spec2_xx;
+        const real uhs_Sigma_2_in_axes2_yy = uhs_trace_J_2 - uhs_J_2_in_spec2_zz;
+        const real uhs_Sigma_2_in_axes2_zz = uhs_trace_J_2 - uhs_J_2_in_spec2_yy;
+        /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real uhs_mu_2_t = gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx +
+            gravity_z*uhs_base_frame_zx;
+        const real uhs_mu_2_t_2 = gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy +
+            gravity_z*uhs_base_frame_zy;
+        const real uhs_mu_2_t_3 = gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz +
+            gravity_z*uhs_base_frame_zz;
+        /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_uhs_size_t = 1/uhs_size_t;
+        const real inv_uhs_size = 1/uhs_size;
         /* (uhs-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real uhs_d_G_t = inv_uhs_joint3_pitch*inv_uhs_joint3_pitch*uhs_J_3_xx;
+        const real uhs_d_G_in_axes3_zz =
+            inv_uhs_joint3_pitch*inv_uhs_joint3_pitch*uhs_J_3_in_spec3_xx;
         /* (h_star) first moment about the platform origin */
         const real uhs_h_star_t = uhs_link3_mass*uhs_platform_point_x;
         const real uhs_h_star_t_2 = uhs_link3_mass*uhs_platform_point_y;
@@ -697,67 +735,34 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real uhs_J_star_t_8 = uhs_link3_mass*(uhs_J_star_t_2 - uhs_J_star_t_4);
         const real uhs_J_star_t_9 = uhs_link3_mass*uhs_platform_point_y*uhs_platform_point_z;
         const real uhs_J_star_t_10 = uhs_link3_mass*(uhs_J_star_t_3 - uhs_J_star_t_4);
-        /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
-        const real uhs_bias_t = 2*uhs_joint3_pitch;
-        /* (uhs-trace_J_3) half the trace of that inertia tensor */
-        const real uhs_trace_J_3 = R(0.5)*uhs_J_3_xx + R(0.5)*uhs_J_3_yy + R(0.5)*uhs_J_3_zz;
-        /* (uhs-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real uhs_Sigma_3_xx = uhs_trace_J_3 - uhs_J_3_yy;
-        const real uhs_Sigma_3_yy = uhs_trace_J_3 - uhs_J_3_zz;
-        const real uhs_Sigma_3_zz = uhs_trace_J_3 - uhs_J_3_xx;
-        /* (uhs-h_2) first moment of link 2 about the origin of link 2 */
-        const real uhs_h_2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass;
-        const real uhs_h_2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass;
-        const real uhs_h_2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass;
-        /* (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real uhs_g_r0_x = gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx +
-            gravity_z*uhs_base_frame_zx;
-        const real uhs_g_r0_y = gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy +
-            gravity_z*uhs_base_frame_zy;
-        const real uhs_g_r0_z = gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz +
-            gravity_z*uhs_base_frame_zz;
-        /* (uhs-trace_J_2) half the trace of that inertia tensor */
-        const real uhs_trace_J_2 = R(0.5)*uhs_J_2_xx + R(0.5)*uhs_J_2_yy + R(0.5)*uhs_J_2_zz;
-        /* (uhs-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real uhs_Sigma_2_xx = uhs_trace_J_2 - uhs_J_2_xx;
-        const real uhs_Sigma_2_yy = uhs_trace_J_2 - uhs_J_2_zz;
-        const real uhs_Sigma_2_zz = uhs_trace_J_2 - uhs_J_2_yy;
         /* (potential) potential energy */
-        const real uhs_b_r0_x = uhs_base_frame_xx*uhs_base_point_x +
+        const real uhs_potential_t = uhs_base_frame_xx*uhs_base_point_x +
             uhs_base_frame_yx*uhs_base_point_y + uhs_base_frame_zx*uhs_base_point_z;
-        const real uhs_b_r0_y = uhs_base_frame_xy*uhs_base_point_x +
+        const real uhs_potential_t_2 = uhs_base_frame_xy*uhs_base_point_x +
             uhs_base_frame_yy*uhs_base_point_y + uhs_base_frame_zy*uhs_base_point_z;
-        const real uhs_b_r0_z = uhs_base_frame_xz*uhs_base_point_x +
+        const real uhs_potential_t_3 = uhs_base_frame_xz*uhs_base_point_x +
             uhs_base_frame_yz*uhs_base_point_y + uhs_base_frame_zz*uhs_base_point_z;
-        /* (uhs-rho2_1) squared amplitude */
-        const real inv_uhs_size_t_3 = 1/uhs_size_t;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_size = 1/uhs_size;
         model->inv_uhs_joint3_pitch[leg] = inv_uhs_joint3_pitch;
         model->inv_uhs_size[leg] = inv_uhs_size;
-        model->inv_uhs_size_t_3[leg] = inv_uhs_size_t_3;
-        model->uhs_J_2_xy[leg] = uhs_J_2_xy;
-        model->uhs_J_2_xz[leg] = uhs_J_2_xz;
-        model->uhs_J_2_yy[leg] = uhs_J_2_yy;
-        model->uhs_J_2_yz[leg] = uhs_J_2_yz;
-        model->uhs_J_2_zz[leg] = uhs_J_2_zz;
-        model->uhs_J_3_xx[leg] = uhs_J_3_xx;
-        model->uhs_J_3_xy[leg] = uhs_J_3_xy;
-        model->uhs_J_3_xz[leg] = uhs_J_3_xz;
-        model->uhs_J_3_yy[leg] = uhs_J_3_yy;
-        model->uhs_J_3_yz[leg] = uhs_J_3_yz;
-        model->uhs_J_3_zz[leg] = uhs_J_3_zz;
-        model->uhs_Jc_2_xx[leg] = uhs_Jc_2_xx;
-        model->uhs_Sigma_2_xx[leg] = uhs_Sigma_2_xx;
-        model->uhs_Sigma_2_yy[leg] = uhs_Sigma_2_yy;
-        model->uhs_Sigma_2_zz[leg] = uhs_Sigma_2_zz;
-        model->uhs_Sigma_3_xx[leg] = uhs_Sigma_3_xx;
-        model->uhs_Sigma_3_yy[leg] = uhs_Sigma_3_yy;
-        model->uhs_Sigma_3_zz[leg] = uhs_Sigma_3_zz;
-        model->uhs_b_r0_x[leg] = uhs_b_r0_x;
-        model->uhs_b_r0_y[leg] = uhs_b_r0_y;
-        model->uhs_b_r0_z[leg] = uhs_b_r0_z;
+        model->inv_uhs_size_t[leg] = inv_uhs_size_t;
+        model->uhs_J_2_in_spec2_xy[leg] = uhs_J_2_in_spec2_xy;
+        model->uhs_J_2_in_spec2_xz[leg] = uhs_J_2_in_spec2_xz;
+        model->uhs_J_2_in_spec2_yy[leg] = uhs_J_2_in_spec2_yy;
+        model->uhs_J_2_in_spec2_yz[leg] = uhs_J_2_in_spec2_yz;
+        model->uhs_J_2_in_spec2_zz[leg] = uhs_J_2_in_spec2_zz;
+        model->uhs_J_3_in_spec3_xx[leg] = uhs_J_3_in_spec3_xx;
+        model->uhs_J_3_in_spec3_xy[leg] = uhs_J_3_in_spec3_xy;
+        model->uhs_J_3_in_spec3_xz[leg] = uhs_J_3_in_spec3_xz;
+        model->uhs_J_3_in_spec3_yy[leg] = uhs_J_3_in_spec3_yy;
+        model->uhs_J_3_in_spec3_yz[leg] = uhs_J_3_in_spec3_yz;
+        model->uhs_J_3_in_spec3_zz[leg] = uhs_J_3_in_spec3_zz;
+        model->uhs_Jc_2_in_axes2_xx[leg] = uhs_Jc_2_in_axes2_xx;
+        model->uhs_Sigma_2_in_axes2_xx[leg] = uhs_Sigma_2_in_axes2_xx;
+        model->uhs_Sigma_2_in_axes2_yy[leg] = uhs_Sigma_2_in_axes2_yy;
+        model->uhs_Sigma_2_in_axes2_zz[leg] = uhs_Sigma_2_in_axes2_zz;
+        model->uhs_Sigma_3_in_axes3_xx[leg] = uhs_Sigma_3_in_axes3_xx;
+        model->uhs_Sigma_3_in_axes3_yy[leg] = uhs_Sigma_3_in_axes3_yy;
+        model->uhs_Sigma_3_in_axes3_zz[leg] = uhs_Sigma_3_in_axes3_zz;
         model->uhs_base_frame_xx[leg] = uhs_base_frame_xx;
         model->uhs_base_frame_xy[leg] = uhs_base_frame_xy;
         model->uhs_base_frame_xz[leg] = uhs_base_frame_xz;
@@ -773,86 +778,95 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         model->uhs_bias_t[leg] = uhs_bias_t;
         model->uhs_branch_1[leg] = uhs_branch_1;
         model->uhs_branch_2[leg] = uhs_branch_2;
-        model->uhs_d_G_t[leg] = uhs_d_G_t;
+        model->uhs_d_G_in_axes3_zz[leg] = uhs_d_G_in_axes3_zz;
+        model->uhs_d_phi_3_in_axes3_yz[leg] = uhs_d_phi_3_in_axes3_yz;
         model->uhs_d_phi_3_t[leg] = uhs_d_phi_3_t;
-        model->uhs_d_phi_3_t_2[leg] = uhs_d_phi_3_t_2;
-        model->uhs_g_r0_x[leg] = uhs_g_r0_x;
-        model->uhs_g_r0_y[leg] = uhs_g_r0_y;
-        model->uhs_g_r0_z[leg] = uhs_g_r0_z;
-        model->uhs_h_2_x[leg] = uhs_h_2_x;
-        model->uhs_h_2_y[leg] = uhs_h_2_y;
-        model->uhs_h_2_z[leg] = uhs_h_2_z;
-        model->uhs_h_3_x[leg] = uhs_h_3_x;
-        model->uhs_h_3_y[leg] = uhs_h_3_y;
-        model->uhs_h_3_z[leg] = uhs_h_3_z;
+        model->uhs_h_2_in_spec2_x[leg] = uhs_h_2_in_spec2_x;
+        model->uhs_h_2_in_spec2_y[leg] = uhs_h_2_in_spec2_y;
+        model->uhs_h_2_in_spec2_z[leg] = uhs_h_2_in_spec2_z;
+        model->uhs_h_3_in_spec3_x[leg] = uhs_h_3_in_spec3_x;
+        model->uhs_h_3_in_spec3_y[leg] = uhs_h_3_in_spec3_y;
+        model->uhs_h_3_in_spec3_z[leg] = uhs_h_3_in_spec3_z;
         model->uhs_joint3_offset_x[leg] = uhs_joint3_offset_x;
         model->uhs_link2_mass[leg] = uhs_link2_mass;
         model->uhs_link3_mass[leg] = uhs_link3_mass;
+        model->uhs_mu_2_t[leg] = uhs_mu_2_t;
+        model->uhs_mu_2_t_2[leg] = uhs_mu_2_t_2;
+        model->uhs_mu_2_t_3[leg] = uhs_mu_2_t_3;
         model->uhs_platform_joint_offset_x[leg] = uhs_platform_joint_offset_x;
         model->uhs_platform_point_x[leg] = uhs_platform_point_x;
         model->uhs_platform_point_y[leg] = uhs_platform_point_y;
         model->uhs_platform_point_z[leg] = uhs_platform_point_z;
+        model->uhs_potential_t[leg] = uhs_potential_t;
+        model->uhs_potential_t_2[leg] = uhs_potential_t_2;
+        model->uhs_potential_t_3[leg] = uhs_potential_t_3;
         model->uhs_size[leg] = uhs_size;
         model->uhs_size_t[leg] = uhs_size_t;
-        total_uhs += leg < 6 ? uhs_link3_mass : 0;
-        total_uhs_x += leg < 6 ? uhs_h_star_t : 0;
-        total_uhs_y += leg < 6 ? uhs_h_star_t_2 : 0;
-        total_uhs_z += leg < 6 ? uhs_h_star_t_3 : 0;
-        total_uhs_xx += leg < 6 ? uhs_J_star_t_5 : 0;
-        total_uhs_xy += leg < 6 ? uhs_J_star_t_6 : 0;
-        total_uhs_xz += leg < 6 ? uhs_J_star_t_7 : 0;
-        total_uhs_yy += leg < 6 ? uhs_J_star_t_8 : 0;
-        total_uhs_yz += leg < 6 ? uhs_J_star_t_9 : 0;
-        total_uhs_zz += leg < 6 ? uhs_J_star_t_10 : 0;
-        total_uhs_x_2 += leg < 6 ? uhs_platform_point_x : 0;
-        total_uhs_y_2 += leg < 6 ? uhs_platform_point_y : 0;
-        total_uhs_z_2 += leg < 6 ? uhs_platform_point_z : 0;
-        total_uhs_2 += leg < 6 ? uhs_size_t : 0;
+        m_star_uhs += leg < 6 ? uhs_link3_mass : 0;
+        h_star_uhs_in_platform_x += leg < 6 ? uhs_h_star_t : 0;
+        h_star_uhs_in_platform_y += leg < 6 ? uhs_h_star_t_2 : 0;
+        h_star_uhs_in_platform_z += leg < 6 ? uhs_h_star_t_3 : 0;
+        J_star_uhs_in_platform_xx += leg < 6 ? -uhs_J_star_t_5 : 0;
+        J_star_uhs_in_platform_xy += leg < 6 ? -uhs_J_star_t_6 : 0;
+        J_star_uhs_in_platform_xz += leg < 6 ? -uhs_J_star_t_7 : 0;
+        J_star_uhs_in_platform_yy += leg < 6 ? -uhs_J_star_t_8 : 0;
+        J_star_uhs_in_platform_yz += leg < 6 ? -uhs_J_star_t_9 : 0;
+        J_star_uhs_in_platform_zz += leg < 6 ? -uhs_J_star_t_10 : 0;
+        b_c_uhs_in_platform_x += leg < 6 ? uhs_platform_point_x : 0;
+        b_c_uhs_in_platform_y += leg < 6 ? uhs_platform_point_y : 0;
+        b_c_uhs_in_platform_z += leg < 6 ? uhs_platform_point_z : 0;
+        legs_size_uhs += leg < 6 ? uhs_size_t : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_uhs;
+    const real m_star = m_star_uhs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_uhs_x;
-    const real h_star_y = h_star_t_2 + total_uhs_y;
-    const real h_star_z = h_star_t_3 + total_uhs_z;
+    const real h_star_in_platform_x = h_star_t + h_star_uhs_in_platform_x;
+    const real h_star_in_platform_y = h_star_t_2 + h_star_uhs_in_platform_y;
+    const real h_star_in_platform_z = h_star_t_3 + h_star_uhs_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_uhs_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_uhs_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_uhs_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_uhs_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_uhs_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_uhs_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_uhs_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_uhs_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_uhs_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_uhs_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_uhs_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_uhs_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.16666666666666666)*total_uhs_x_2;
-    const real b_c_y = R(0.16666666666666666)*total_uhs_y_2;
-    const real b_c_z = R(0.16666666666666666)*total_uhs_z_2;
+    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_uhs_in_platform_x;
+    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_uhs_in_platform_y;
+    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_uhs_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_uhs_2);
+    const real legs_size = root(legs_size_uhs)*spread_t;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1422,41 +1436,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1467,26 +1487,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1505,21 +1534,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1530,490 +1559,526 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (uhs-S) from the base point to the connection point */
+        /* (uhs-h_3) first moment of link 3 about the connection point */
         const real R_xx = s[3*w + j];
         const real R_xy = s[4*w + j];
         const real R_xz = s[5*w + j];
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
-        /* (uhs-px_1) component along the reference direction */
+        const real uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z;
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
         const real uhs_base_frame_zx = m->uhs_base_frame_zx[i];
-        const real uhs_px_1 = uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx +
-            uhs_S_z*uhs_base_frame_zx;
-        /* (uhs-py_1) component across the reference direction */
+        const real uhs_h_3_t_4 = uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3;
         const real uhs_base_frame_xy = m->uhs_base_frame_xy[i];
         const real uhs_base_frame_yy = m->uhs_base_frame_yy[i];
         const real uhs_base_frame_zy = m->uhs_base_frame_zy[i];
-        const real uhs_py_1 = uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy +
-            uhs_S_z*uhs_base_frame_zy;
-        /* (uhs-rho2_1) squared amplitude */
-        const real uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1;
-        /* (uhs-root_1) root, with the sign of the branch */
-        const real uhs_branch_1 = m->uhs_branch_1[i];
-        const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
-        /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real uhs_h_3_t_5 = uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3;
+        const real uhs_h_3_t_6 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5;
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
-            uhs_S_z*uhs_base_frame_zz;
-        /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
-        /* (uhs-root_2) root, with the sign of the branch */
+        const real uhs_h_3_t_7 = uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3;
+        const real uhs_h_3_t_8 = uhs_h_3_t_6 + uhs_h_3_t_7*uhs_h_3_t_7;
         const real uhs_branch_2 = m->uhs_branch_2[i];
-        const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
-        /* (uhs-x_3) from the origin of joint 3 to the connection point */
+        const real uhs_h_3_t_9 = uhs_branch_2*root(uhs_h_3_t_8);
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
-        /* (uhs-q_3) displacement of joint 3 */
+        const real uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x;
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t;
-        /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
-        /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_t = uhs_c_2*uhs_c_3_t;
-        const real uhs_v_1_t_2 = uhs_c_2*uhs_s_3;
-        const real uhs_v_1_t_3 = uhs_root_2*uhs_v_1_t_2;
-        const real uhs_v_1_t_4 = uhs_root_2*uhs_v_1_t;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_root_2 = 1/uhs_root_2;
-        const real uhs_axis_z_x = inv_uhs_root_2*uhs_S_x;
-        const real uhs_axis_z_y = inv_uhs_root_2*uhs_S_y;
-        const real uhs_axis_z_z = inv_uhs_root_2*uhs_S_z;
-        const real uhs_w_1_t = uhs_s_2*uhs_s_3;
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-        const real uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
-        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_in_base_x = axis_y_uhs_axes3_r4_x*uhs_base_frame_xx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*uhs_v_1_t_2;
-        const real axis_y_uhs_axes3_in_base_y = axis_y_uhs_axes3_r4_x*uhs_base_frame_yx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*uhs_v_1_t_2;
-        const real axis_y_uhs_axes3_in_base_z = axis_y_uhs_axes3_r4_x*uhs_base_frame_zx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*uhs_v_1_t_2;
-        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*uhs_axis_z_z -
-            axis_y_uhs_axes3_in_base_z*uhs_axis_z_y;
-        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*uhs_axis_z_x -
-            axis_y_uhs_axes3_in_base_x*uhs_axis_z_z;
-        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*uhs_axis_z_y -
-            axis_y_uhs_axes3_in_base_y*uhs_axis_z_x;
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_3 - uhs_s_3*uhs_v_1_t_4;
-        const real uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_4 + uhs_s_3*uhs_v_1_t_3;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_v_1_r0_y = 1/uhs_v_1_r0_y;
-        const real uhs_w_1_t_2 = inv_uhs_v_1_r0_y*uhs_s_3;
-        const real uhs_w_1_t_3 = inv_uhs_v_1_r0_y*uhs_c_3_t;
-        /* (uhs-w_2) reciprocal vector 2 */
-        const real uhs_w_2_t = inv_uhs_root_2*inv_uhs_v_1_r0_y*uhs_v_1_r0_x;
-        const real uhs__r1_x = inv_uhs_root_2*uhs_c_3_t - uhs_s_3*uhs_w_2_t;
-        const real uhs__r1_y = -inv_uhs_root_2*uhs_s_3 - uhs_c_3_t*uhs_w_2_t;
-        /* (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real uhs_d_alpha_3_t = uhs_s_2*uhs_w_1_t_3;
-        /* (uhs-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
-        const real uhs_J_3_xy = m->uhs_J_3_xy[i];
-        const real uhs_J_3_xz = m->uhs_J_3_xz[i];
-        const real uhs_L_c_3_r0_y = uhs_J_3_xy*uhs_s_3 + uhs_J_3_xz*uhs_c_3_t;
-        /* (uhs-D_1_3) inertia of joint 3 along joint 1 */
-        const real uhs_J_3_xx = m->uhs_J_3_xx[i];
-        const real uhs_D_1_3 = uhs_J_3_xx*uhs_s_2 + uhs_J_3_xz*uhs_v_1_t_2 - uhs_J_3_xy*uhs_v_1_t;
+        const real uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_h_3_t_10);
+        const real uhs_e_2_in_axes3_y = sine(uhs_h_3_t_11);
+        const real uhs_e_2_in_axes3_x = cosine(uhs_h_3_t_11);
+        const real uhs_h_3_in_spec3_y = m->uhs_h_3_in_spec3_y[i];
+        const real uhs_h_3_in_spec3_z = m->uhs_h_3_in_spec3_z[i];
+        const real uhs_h_3_in_axes2_y = uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_y -
+            uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z;
         /* (uhs-J_3) inertia tensor of link 3 about the connection point */
-        const real uhs_J_3_yz = m->uhs_J_3_yz[i];
-        const real uhs_J_3_t = uhs_J_3_yz*uhs_s_3;
-        const real uhs_J_3_yy = m->uhs_J_3_yy[i];
-        const real uhs__x = uhs_J_3_yy*uhs_c_3_t - uhs_J_3_t;
-        const real uhs_J_3_t_2 = uhs_J_3_yz*uhs_c_3_t;
-        const real uhs_J_3_zz = m->uhs_J_3_zz[i];
-        const real uhs__x_2 = uhs_J_3_t_2 - uhs_J_3_zz*uhs_s_3;
-        /* (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real uhs_J_2_xz = m->uhs_J_2_xz[i];
-        const real uhs_Jc_2_xy = uhs_J_3_xy*uhs_c_3_t - uhs_J_2_xz - uhs_J_3_xz*uhs_s_3;
-        /* (uhs-L_c_2) moment about joint 2 that accelerates joint 2, per unit */
-        const real uhs_J_2_xy = m->uhs_J_2_xy[i];
-        const real uhs_J_2_yz = m->uhs_J_2_yz[i];
-        const real uhs_L_c_2_r0_y = uhs_s_2*(uhs_J_2_xy + uhs_L_c_3_r0_y) -
-            uhs_c_2*(uhs__x*uhs_s_3 + uhs__x_2*uhs_c_3_t - uhs_J_2_yz);
-        /* (uhs-h_3) first moment of link 3 about the connection point */
-        const real uhs_h_3_y = m->uhs_h_3_y[i];
-        const real uhs_h_3_z = m->uhs_h_3_z[i];
-        const real uhs_h_3_r1_x = uhs_c_3_t*uhs_h_3_y - uhs_h_3_z*uhs_s_3;
-        /* (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real uhs_J_2_yy = m->uhs_J_2_yy[i];
-        const real uhs_d_Gamma_2_t = inv_uhs_root_2*(uhs_J_2_yy + uhs_c_3_t*(uhs_J_3_t +
-            uhs_J_3_zz*uhs_c_3_t) + uhs_s_3*(uhs_J_3_t_2 + uhs_J_3_yy*uhs_s_3));
-        const real uhs_d_Gamma_2_t_2 = inv_uhs_v_1_r0_y*(uhs_L_c_2_r0_y -
-            uhs_d_Gamma_2_t*uhs_v_1_r0_x);
-        const real uhs_d_Gamma_2_x = inv_uhs_joint3_pitch*uhs_L_c_3_r0_y - uhs_h_3_r1_x;
-        const real uhs_h_3_x = m->uhs_h_3_x[i];
-        const real uhs_d_Gamma_2_y = uhs_d_Gamma_2_t + uhs_h_3_x;
-        /* (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real uhs_d_Gamma_1_t = inv_uhs_root_2*uhs_L_c_2_r0_y;
-        const real uhs_J_2_zz = m->uhs_J_2_zz[i];
-        const real uhs_Jc_2_xx = m->uhs_Jc_2_xx[i];
-        const real uhs_d_Gamma_1_t_2 = uhs_s_2*(uhs_Jc_2_xx*uhs_s_2 - uhs_Jc_2_xy*uhs_c_2) -
-            uhs_c_2*(uhs_Jc_2_xy*uhs_s_2 - uhs_c_2*(uhs_J_2_zz + uhs__x*uhs_c_3_t -
-            uhs__x_2*uhs_s_3)) - uhs_d_Gamma_1_t*uhs_v_1_r0_x;
-        const real uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3;
-        const real uhs__r0_y = uhs_d_Gamma_1_t_3*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_t;
-        const real uhs_d_Gamma_1_x = inv_uhs_v_1_r0_y*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_x +
-            uhs_h_3_r1_x*uhs_s_2;
-        const real uhs_d_Gamma_1_y = uhs_c_3_t*uhs_h_3_z + uhs_h_3_y*uhs_s_3 -
-            uhs_c_2*uhs_d_Gamma_1_t_3 - uhs_d_Gamma_1_t*uhs_s_2;
-        const real uhs_d_Gamma_1_r1_x = uhs__r0_y*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_y;
-        const real uhs_d_Gamma_1_r1_y = -uhs__r0_y*uhs_c_2 - uhs_d_Gamma_1_y*uhs_s_2;
-        const real uhs_d_Gamma_1_r3_y = uhs_c_3_t*uhs_d_Gamma_1_x - uhs_d_Gamma_1_r1_y*uhs_s_3;
-        /* (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real uhs_d_Gamma_2_r1_y = uhs_c_3_t*uhs_d_Gamma_2_t_2 - uhs_d_Gamma_2_y*uhs_s_3;
-        /* (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real uhs_d_c_xx = uhs_h_3_z*uhs_s_2*uhs_w_1_t_2 -
-            uhs__r1_x*(uhs_c_3_t*uhs_d_Gamma_2_y + uhs_d_Gamma_2_t_2*uhs_s_3) -
-            uhs_h_3_x*(uhs__r1_x*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_2) -
-            uhs_w_1_t_2*(uhs_c_3_t*uhs_d_Gamma_1_r1_y + uhs_d_Gamma_1_x*uhs_s_3);
-        const real uhs_d_c_xy = uhs_d_alpha_3_t*uhs_h_3_z - uhs__r1_x*uhs_d_Gamma_2_r1_y -
-            uhs_d_Gamma_1_r3_y*uhs_w_1_t_2 - uhs_h_3_x*(uhs__r1_y*uhs_c_3_t +
-            uhs_v_1_t_2*uhs_w_1_t_3);
-        const real uhs_d_phi_3_t = m->uhs_d_phi_3_t[i];
-        const real uhs_d_c_xz = uhs_d_phi_3_t - uhs__r1_x*uhs_d_Gamma_2_x -
-            uhs_d_Gamma_1_r1_x*uhs_w_1_t_2;
-        const real uhs_d_phi_3_t_2 = m->uhs_d_phi_3_t_2[i];
-        const real uhs_d_c_yz = -uhs_d_phi_3_t_2 - uhs__r1_y*uhs_d_Gamma_2_x -
-            uhs_d_Gamma_1_r1_x*uhs_w_1_t_3;
-        /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real uhs_Q_t = uhs_d_c_xx + uhs__r1_y*uhs_d_Gamma_2_r1_y +
-            uhs_d_Gamma_1_r3_y*uhs_w_1_t_3 + uhs_d_alpha_3_t*uhs_h_3_y -
-            uhs_h_3_x*(uhs__r1_y*uhs_s_3 - uhs_v_1_t*uhs_w_1_t_3);
-        const real uhs_Q_t_2 = R(0.5)*uhs_Q_t;
-        const real uhs_d_G_t = m->uhs_d_G_t[i];
-        const real uhs_Q_t_3 = uhs_d_G_t + uhs_d_c_xx;
-        const real uhs_Q_t_4 = R(0.5)*uhs_Q_t_3;
-        const real uhs_Q_t_5 = axis_x_uhs_axes3_x*uhs_d_c_xy + uhs_axis_z_x*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_x*uhs_Q_t_2;
-        const real uhs_Q_t_6 = axis_x_uhs_axes3_y*uhs_d_c_xy + uhs_axis_z_y*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_y*uhs_Q_t_2;
-        const real uhs_Q_t_7 = axis_x_uhs_axes3_z*uhs_d_c_xy + uhs_axis_z_z*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_z*uhs_Q_t_2;
-        const real uhs_Q_t_8 = uhs_Q_t_4*uhs_axis_z_x - axis_x_uhs_axes3_x*uhs_d_c_xz;
-        const real uhs_Q_t_9 = uhs_Q_t_4*uhs_axis_z_y - axis_x_uhs_axes3_y*uhs_d_c_xz;
-        const real uhs_Q_t_10 = uhs_Q_t_4*uhs_axis_z_z - axis_x_uhs_axes3_z*uhs_d_c_xz;
-        const real uhs_Q_t_11 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_5 - uhs_Q_t_8*uhs_axis_z_x;
-        const real uhs_Q_t_12 = 2*uhs_Q_t_11 + uhs_d_c_xx;
-        const real uhs_Q_t_13 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_6 +
-            axis_y_uhs_axes3_in_base_y*uhs_Q_t_5 - uhs_Q_t_8*uhs_axis_z_y -
-            uhs_Q_t_9*uhs_axis_z_x;
-        const real uhs_Q_t_14 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_7 +
-            axis_y_uhs_axes3_in_base_z*uhs_Q_t_5 - uhs_Q_t_10*uhs_axis_z_x -
-            uhs_Q_t_8*uhs_axis_z_z;
-        const real uhs_Q_t_15 = axis_y_uhs_axes3_in_base_y*uhs_Q_t_6 - uhs_Q_t_9*uhs_axis_z_y;
-        const real uhs_Q_t_16 = 2*uhs_Q_t_15 + uhs_d_c_xx;
-        const real uhs_Q_t_17 = axis_y_uhs_axes3_in_base_y*uhs_Q_t_7 +
-            axis_y_uhs_axes3_in_base_z*uhs_Q_t_6 - uhs_Q_t_10*uhs_axis_z_y -
-            uhs_Q_t_9*uhs_axis_z_z;
-        const real uhs_Q_t_18 = axis_y_uhs_axes3_in_base_z*uhs_Q_t_7 - uhs_Q_t_10*uhs_axis_z_z;
-        const real uhs_Q_t_19 = 2*uhs_Q_t_18 + uhs_d_c_xx;
-        /* (M_ta) coupling block of M */
-        const real uhs_M_ta_t = uhs_Q_t_13*uhs_q_in_base_z;
-        const real uhs_M_ta_t_2 = uhs_Q_t_14*uhs_q_in_base_y;
-        const real uhs_M_ta_t_3 = uhs_M_ta_t - uhs_M_ta_t_2;
-        const real uhs_M_ta_t_4 = uhs_Q_t_12*uhs_q_in_base_z - uhs_Q_t_14*uhs_q_in_base_x;
-        const real uhs_M_ta_t_5 = uhs_Q_t_12*uhs_q_in_base_y - uhs_Q_t_13*uhs_q_in_base_x;
-        const real uhs_M_ta_t_6 = uhs_Q_t_16*uhs_q_in_base_z - uhs_Q_t_17*uhs_q_in_base_y;
-        const real uhs_M_ta_t_7 = uhs_Q_t_17*uhs_q_in_base_x;
-        const real uhs_M_ta_t_8 = uhs_M_ta_t - uhs_M_ta_t_7;
-        const real uhs_M_ta_t_9 = uhs_Q_t_13*uhs_q_in_base_y - uhs_Q_t_16*uhs_q_in_base_x;
-        const real uhs_M_ta_t_10 = uhs_Q_t_17*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_y;
-        const real uhs_M_ta_t_11 = uhs_Q_t_14*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_x;
-        const real uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real uhs_M_aa_t = uhs_M_ta_t_6*uhs_q_in_base_z - uhs_M_ta_t_10*uhs_q_in_base_y;
-        const real uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_y;
-        const real uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_in_base_y + uhs_M_ta_t_9*uhs_q_in_base_z;
-        const real uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_x;
-        const real uhs_M_aa_t_5 = uhs_M_ta_t_12*uhs_q_in_base_x + uhs_M_ta_t_5*uhs_q_in_base_z;
-        const real uhs_M_aa_t_6 = uhs_M_ta_t_5*uhs_q_in_base_y - uhs_M_ta_t_9*uhs_q_in_base_x;
+        const real uhs_J_3_in_spec3_xy = m->uhs_J_3_in_spec3_xy[i];
+        const real uhs_J_3_in_spec3_xz = m->uhs_J_3_in_spec3_xz[i];
+        const real uhs_J_3_in_axes2_xz = uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x +
+            uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_y;
+        /* (uhs-root_1) root, with the sign of the branch */
+        const real uhs_branch_1 = m->uhs_branch_1[i];
+        const real uhs_root_1 = uhs_branch_1*root(uhs_h_3_t_6);
+        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_uhs_h_3_t_6 = 1/uhs_h_3_t_6;
+        const real uhs_c_1 = -inv_uhs_h_3_t_6*uhs_h_3_t_5*uhs_root_1;
+        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real uhs_s_1 = inv_uhs_h_3_t_6*uhs_h_3_t_4*uhs_root_1;
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_uhs_h_3_t_8 = 1/uhs_h_3_t_8;
+        const real uhs_c_2 = -inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1;
+        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real uhs_s_2 = inv_uhs_h_3_t_8*uhs_h_3_t_7*uhs_h_3_t_9;
         /* (uhs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y;
+        const real uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y;
         const real omega_x = s[15*w + j];
-        const real uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z;
-        const real uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x;
+        const real uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z;
+        const real uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x;
         const real t_dot_x = s[12*w + j];
         const real uhs_S_dot_x = t_dot_x + uhs_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3;
-        const real uhs_S_dot_r0_x = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx
-            + uhs_S_dot_z*uhs_base_frame_zx;
-        const real uhs_S_dot_r0_y = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy
-            + uhs_S_dot_z*uhs_base_frame_zy;
-        const real uhs_S_dot_r0_z = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz
-            + uhs_S_dot_z*uhs_base_frame_zz;
-        const real uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1;
+        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
+        const real uhs_e_1_in_axes3_x = uhs_c_2*uhs_e_2_in_axes3_y;
+        const real uhs_e_1_in_axes3_y = -uhs_c_2*uhs_e_2_in_axes3_x;
+        const real uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9;
+        const real uhs_v_1_in_axes3_y = -uhs_e_1_in_axes3_x*uhs_h_3_t_9;
+        const real uhs_v_1_in_axes2_y = uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_x -
+            uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_y;
+        const real uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_y;
+        /* (uhs-w_1) reciprocal vector 1 */
+        const real inv_uhs_v_1_in_axes2_z = 1/uhs_v_1_in_axes2_z;
+        const real uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x;
+        const real uhs_w_1_in_axes3_y = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_y;
+        /* (uhs-w_2) reciprocal vector 2 */
+        const real inv_uhs_h_3_t_9 = 1/uhs_h_3_t_9;
+        const real uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_in_axes2_y;
+        const real uhs_w_2_in_axes3_x = inv_uhs_h_3_t_9*uhs_e_2_in_axes3_y -
+            uhs_e_2_in_axes3_x*uhs_w_2_t;
+        const real uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x -
+            uhs_e_2_in_axes3_y*uhs_w_2_t;
+        /* (uhs-w_3) reciprocal vector 3 */
+        const real axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t;
+        const real axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2;
+        const real axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3;
+        const real uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch;
+        const real uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch;
+        const real uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch;
+        /* (uhs-qd_1) rate of joint 1 */
+        const real uhs_qd_1_t = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx;
+        const real uhs_qd_1_t_2 = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy;
+        const real uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1);
+        /* (uhs-qd_2) rate of joint 2 */
+        const real uhs_qd_2_t = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz;
+        const real uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2;
+        const real uhs_qd_2 = inv_uhs_h_3_t_9*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 -
+            uhs_qd_1*uhs_v_1_in_axes2_y);
         /* (uhs-qd_3) rate of joint 3 */
-        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 -
-            uhs_S_dot_r1_y*uhs_c_2);
-        const real uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1);
-        const real uhs_qd_2 = inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 -
-            uhs_qd_1*uhs_v_1_r0_x);
+        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2);
         /* (uhs-omega_1) angular velocity of link 1 */
-        const real uhs_omega_1_t = uhs_qd_1*uhs_s_2;
-        const real uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1;
+        const real uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2;
+        const real uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1;
         /* (uhs-omega_2) angular velocity of link 2 */
-        const real uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2;
-        const real uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3;
+        const real uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 +
+            uhs_e_2_in_axes3_y*uhs_omega_1_in_axes2_y;
+        const real uhs_omega_2_in_axes3_y = uhs_e_2_in_axes3_y*uhs_qd_2 -
+            uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y;
+        /* (uhs-W_2) centripetal tensor of link 2 */
+        const real uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2;
+        const real uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2;
+        const real uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y;
+        const real uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x;
+        const real uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y;
+        const real uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
+        const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
         /* (uhs-omega_3) angular velocity of link 3 */
-        const real uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3;
-        /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3;
-        const real uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3;
+        const real uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3;
+        /* (uhs-W_3) centripetal tensor of link 3 */
+        const real uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
+        const real uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
         /* (uhs-u_1) centripetal acceleration of the connection point */
+        const real uhs_u_1_t = uhs_e_2_in_axes3_x*uhs_s_2;
+        const real uhs_u_1_t_2 = uhs_c_1*uhs_e_2_in_axes3_y - uhs_s_1*uhs_u_1_t;
+        const real uhs_u_1_t_3 = uhs_c_1*uhs_u_1_t + uhs_e_2_in_axes3_y*uhs_s_1;
+        const real axis_y_uhs_axes3_x = uhs_base_frame_xx*uhs_u_1_t_2 +
+            uhs_base_frame_xy*uhs_u_1_t_3 + uhs_base_frame_xz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_y = uhs_base_frame_yx*uhs_u_1_t_2 +
+            uhs_base_frame_yy*uhs_u_1_t_3 + uhs_base_frame_yz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_z = uhs_base_frame_zx*uhs_u_1_t_2 +
+            uhs_base_frame_zy*uhs_u_1_t_3 + uhs_base_frame_zz*uhs_e_1_in_axes3_y;
+        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*axis_z_uhs_axes3_z -
+            axis_y_uhs_axes3_z*axis_z_uhs_axes3_y;
+        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*axis_z_uhs_axes3_x -
+            axis_y_uhs_axes3_x*axis_z_uhs_axes3_z;
+        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*axis_z_uhs_axes3_y -
+            axis_y_uhs_axes3_y*axis_z_uhs_axes3_x;
         const real uhs_u_1_x = omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2;
         const real uhs_u_1_y = omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3;
         const real uhs_u_1_z = omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t;
+        const real uhs_u_1_in_axes3_x = axis_x_uhs_axes3_x*uhs_u_1_x +
+            axis_x_uhs_axes3_y*uhs_u_1_y + axis_x_uhs_axes3_z*uhs_u_1_z;
+        const real uhs_u_1_in_axes3_y = axis_y_uhs_axes3_x*uhs_u_1_x +
+            axis_y_uhs_axes3_y*uhs_u_1_y + axis_y_uhs_axes3_z*uhs_u_1_z;
+        const real uhs_u_1_in_axes3_z = axis_z_uhs_axes3_x*uhs_u_1_x +
+            axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z;
         /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2;
-        const real uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2;
-        const real uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y;
-        const real uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y;
+        const real uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_y;
+        const real uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x;
+        /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3;
+        const real uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3;
         /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t;
-        const real uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y;
-        /* (uhs-W_2) centripetal tensor of link 2 */
-        const real uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t;
-        const real uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2;
-        const real uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2;
-        const real uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2;
-        /* (uhs-W_3) centripetal tensor of link 3 */
-        const real uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x;
-        const real uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y;
-        const real uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z;
-        const real uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y;
-        const real uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z;
-        const real uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z;
-        const real uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2;
+        const real uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t;
+        const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y;
         /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
         const real uhs_bias_t = m->uhs_bias_t[i];
         const real uhs_bias_t_2 = uhs_bias_t*uhs_qd_3;
-        const real uhs_bias_x = uhs_bias_t_2*uhs_omega_2_r1_y +
-            uhs_joint3_offset_x*(uhs_zeta_2_t_2 + uhs_omega_1_t*uhs_omega_2_r1_x) +
-            uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y);
-        const real uhs_bias_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
-            uhs_omega_1_t*uhs_omega_2_r1_y) + uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) -
-            uhs_bias_t_2*uhs_omega_2_r1_x;
-        const real uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x;
-        /* (uhs-u_1) centripetal acceleration of the connection point */
-        const real uhs_u_1_tip_x = axis_x_uhs_axes3_x*uhs_u_1_x + axis_x_uhs_axes3_y*uhs_u_1_y +
-            axis_x_uhs_axes3_z*uhs_u_1_z;
-        const real uhs_u_1_tip_y = axis_y_uhs_axes3_in_base_x*uhs_u_1_x +
-            axis_y_uhs_axes3_in_base_y*uhs_u_1_y + axis_y_uhs_axes3_in_base_z*uhs_u_1_z;
-        const real uhs_u_1_tip_z = uhs_axis_z_x*uhs_u_1_x + uhs_axis_z_y*uhs_u_1_y +
-            uhs_axis_z_z*uhs_u_1_z;
+        const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
+            uhs_h_3_t_10*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y) +
+            uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x);
+        const real uhs_bias_in_axes3_y = uhs_h_3_t_10*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) + uhs_joint3_offset_x*(uhs_zeta_2_t +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) - uhs_bias_t_2*uhs_omega_2_in_axes3_x;
+        const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 -
+            uhs_W_2_t_3*uhs_joint3_offset_x;
         /* (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real uhs_rel_o_x = uhs_u_1_tip_x - uhs_bias_x;
-        const real uhs_rel_o_y = uhs_u_1_tip_y - uhs_bias_y;
-        const real uhs_rel_o_z = uhs_u_1_tip_z - uhs_bias_z;
-        /* (uhs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real uhs_qdd_1_o = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_o_y + uhs_rel_o_x*uhs_s_3);
-        const real uhs_qdd_2_o = inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_r0_x + uhs_rel_o_y*uhs_s_3 -
-            uhs_c_3_t*uhs_rel_o_x);
+        const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x;
+        const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y;
+        const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z;
+        /* (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real uhs_qdd_1_o = inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_rel_o_in_axes3_y);
+        /* (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real uhs_qdd_2_o = -inv_uhs_h_3_t_9*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y +
+            uhs_qdd_1_o*uhs_v_1_in_axes2_y - uhs_e_2_in_axes3_y*uhs_rel_o_in_axes3_x);
         /* (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real uhs_alpha_1_o_t = uhs_qdd_1_o*uhs_s_2;
-        const real uhs_alpha_1_o_t_2 = uhs_c_2*uhs_qdd_1_o;
+        const real uhs_alpha_1_o_in_axes2_x = uhs_qdd_1_o*uhs_s_2;
+        const real uhs_alpha_1_o_in_axes2_y = uhs_c_2*uhs_qdd_1_o;
         /* (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real uhs_alpha_2_o_x = uhs_alpha_1_o_t - uhs_zeta_2_x;
-        const real uhs_alpha_2_o_y = -uhs_alpha_1_o_t_2 - uhs_zeta_2_y;
+        const real uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
+        const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz;
+        /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real uhs_B_2_o_in_axes2_xy = uhs_W_2_in_axes2_xy - uhs_qdd_2_o;
+        const real uhs_B_2_o_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
+        const real uhs_B_2_o_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
+        const real uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
+        /* (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real uhs_d_alpha_3_in_axes3_zy = uhs_s_2*uhs_w_1_in_axes3_y;
         /* (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real uhs_alpha_3_o_x = uhs_zeta_3_x + uhs_alpha_2_o_y*uhs_c_3_t -
-            uhs_qdd_2_o*uhs_s_3;
-        const real uhs_alpha_3_o_y = -uhs_zeta_3_y - uhs_alpha_2_o_y*uhs_s_3 -
-            uhs_c_3_t*uhs_qdd_2_o;
-        const real uhs_alpha_3_o_z = uhs_alpha_2_o_x + inv_uhs_joint3_pitch*uhs_rel_o_z;
+        const real uhs_alpha_3_o_in_axes3_x = uhs_zeta_3_in_axes3_x +
+            uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_y + uhs_e_2_in_axes3_x*uhs_qdd_2_o;
+        const real uhs_alpha_3_o_in_axes3_y = uhs_zeta_3_in_axes3_y +
+            uhs_e_2_in_axes3_y*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_x;
+        const real uhs_alpha_3_o_in_axes3_z = uhs_alpha_2_o_in_axes2_x +
+            inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z;
         /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real uhs_B_3_o_xy = uhs_W_3_xy - uhs_alpha_3_o_z;
-        const real uhs_B_3_o_xz = uhs_W_3_xz + uhs_alpha_3_o_y;
-        const real uhs_B_3_o_yx = uhs_W_3_xy + uhs_alpha_3_o_z;
-        const real uhs_B_3_o_yz = uhs_W_3_yz - uhs_alpha_3_o_x;
-        const real uhs_B_3_o_zx = uhs_W_3_xz - uhs_alpha_3_o_y;
-        const real uhs_B_3_o_zy = uhs_W_3_yz + uhs_alpha_3_o_x;
+        const real uhs_B_3_o_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
+        const real uhs_B_3_o_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
+        const real uhs_B_3_o_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z;
+        const real uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
+        const real uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
+        const real uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
         /* (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real uhs_acc_3_o_x = uhs_u_1_tip_x - axis_x_uhs_axes3_x*gravity_x -
+        const real uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x -
             axis_x_uhs_axes3_y*gravity_y - axis_x_uhs_axes3_z*gravity_z;
-        const real uhs_acc_3_o_y = uhs_u_1_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
-            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z;
-        const real uhs_acc_3_o_z = uhs_u_1_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y
-            - gravity_z*uhs_axis_z_z;
+        const real uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*gravity_x -
+            axis_y_uhs_axes3_y*gravity_y - axis_y_uhs_axes3_z*gravity_z;
+        const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x -
+            axis_z_uhs_axes3_y*gravity_y - axis_z_uhs_axes3_z*gravity_z;
+        /* (uhs-D_1_3) inertia of joint 3 along joint 1 */
+        const real uhs_J_3_in_spec3_xx = m->uhs_J_3_in_spec3_xx[i];
+        const real uhs_D_1_3 = uhs_J_3_in_spec3_xx*uhs_s_2 +
+            uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x + uhs_J_3_in_spec3_xz*uhs_e_1_in_axes3_y;
+        /* (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+           about the connection point */
+        const real uhs_J_3_in_spec3_yz = m->uhs_J_3_in_spec3_yz[i];
+        const real uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x;
+        const real uhs_J_3_in_spec3_yy = m->uhs_J_3_in_spec3_yy[i];
+        const real uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_y - uhs_Jc_2_t;
+        const real uhs_Jc_2_t_3 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_y;
+        const real uhs_J_3_in_spec3_zz = m->uhs_J_3_in_spec3_zz[i];
+        const real uhs_Jc_2_t_4 = uhs_Jc_2_t_3 - uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x;
+        const real uhs_J_2_in_spec2_xz = m->uhs_J_2_in_spec2_xz[i];
+        const real uhs_Jc_2_in_axes2_xy = uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_y -
+            uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x;
+        const real uhs_J_2_in_spec2_xy = m->uhs_J_2_in_spec2_xy[i];
+        const real uhs_J_2_in_spec2_yz = m->uhs_J_2_in_spec2_yz[i];
+        const real uhs_Jc_2_in_axes1_xz = uhs_c_2*(uhs_Jc_2_t_2*uhs_e_2_in_axes3_x +
+            uhs_Jc_2_t_4*uhs_e_2_in_axes3_y - uhs_J_2_in_spec2_yz) + uhs_s_2*(uhs_J_2_in_spec2_xy
+            + uhs_J_3_in_axes2_xz);
         /* (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real uhs_Sigma_3_yy = m->uhs_Sigma_3_yy[i];
-        const real uhs_Sigma_3_zz = m->uhs_Sigma_3_zz[i];
-        const real uhs_mu_3_o_x = uhs_B_3_o_yx*uhs_J_3_xy + uhs_B_3_o_zy*uhs_Sigma_3_yy +
-            uhs_J_3_xz*(uhs_W_3_t_2 - uhs_W_3_t_3) + uhs_acc_3_o_z*uhs_h_3_z -
-            uhs_B_3_o_yz*uhs_Sigma_3_zz - uhs_B_3_o_zx*uhs_J_3_yz - uhs_acc_3_o_y*uhs_h_3_x;
-        const real uhs_Sigma_3_xx = m->uhs_Sigma_3_xx[i];
-        const real uhs_mu_3_o_y = uhs_B_3_o_xz*uhs_Sigma_3_zz + uhs_B_3_o_zy*uhs_J_3_yz +
-            uhs_acc_3_o_x*uhs_h_3_x - uhs_B_3_o_xy*uhs_J_3_xz - uhs_B_3_o_zx*uhs_Sigma_3_xx -
-            uhs_J_3_xy*(uhs_W_3_t - uhs_W_3_t_3) - uhs_acc_3_o_z*uhs_h_3_y;
-        const real uhs_mu_3_o_z = uhs_B_3_o_xz*uhs_J_3_xz + uhs_B_3_o_yx*uhs_Sigma_3_xx +
-            uhs_J_3_yz*(uhs_W_3_t - uhs_W_3_t_2) + uhs_acc_3_o_y*uhs_h_3_y -
-            uhs_B_3_o_xy*uhs_Sigma_3_yy - uhs_B_3_o_yz*uhs_J_3_xy - uhs_acc_3_o_x*uhs_h_3_z;
-        /* (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real uhs_g_r0_x = m->uhs_g_r0_x[i];
-        const real uhs_g_r0_y = m->uhs_g_r0_y[i];
-        const real uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x;
-        const real uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1;
-        const real uhs_g_r0_z = m->uhs_g_r0_z[i];
-        const real uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y;
-        const real uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2;
-        /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real uhs_B_2_o_xy = uhs_qdd_2_o - uhs_W_2_xy;
-        const real uhs_B_2_o_yx = -uhs_W_2_xy - uhs_qdd_2_o;
-        const real uhs_B_2_o_zx = uhs_zeta_2_y - uhs_alpha_2_o_y;
-        const real uhs_B_2_o_zy = uhs_alpha_2_o_x - uhs_zeta_2_x;
+        const real uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
+        const real uhs_Sigma_3_in_axes3_yy = m->uhs_Sigma_3_in_axes3_yy[i];
+        const real uhs_Sigma_3_in_axes3_zz = m->uhs_Sigma_3_in_axes3_zz[i];
+        const real uhs_h_3_in_spec3_x = m->uhs_h_3_in_spec3_x[i];
+        const real uhs_mu_3_o_in_axes3_x = uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy +
+            uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy + uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 -
+            uhs_mu_3_o_t) + uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_yz*uhs_Sigma_3_in_axes3_zz -
+            uhs_B_3_o_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_x;
+        const real uhs_Sigma_3_in_axes3_xx = m->uhs_Sigma_3_in_axes3_xx[i];
+        const real uhs_mu_3_o_in_axes3_y = uhs_B_3_o_in_axes3_xz*uhs_Sigma_3_in_axes3_zz +
+            uhs_B_3_o_in_axes3_zy*uhs_J_3_in_spec3_yz + uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_x
+            - uhs_B_3_o_in_axes3_xy*uhs_J_3_in_spec3_xz -
+            uhs_B_3_o_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
+            uhs_mu_3_o_t) - uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_y;
+        const real uhs_mu_3_o_in_axes3_z = uhs_B_3_o_in_axes3_xz*uhs_J_3_in_spec3_xz +
+            uhs_B_3_o_in_axes3_yx*uhs_Sigma_3_in_axes3_xx + uhs_J_3_in_spec3_yz*(uhs_W_2_t -
+            uhs_W_2_t_2) + uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_y -
+            uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
+            uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z;
         /* (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real uhs_Sigma_2_yy = m->uhs_Sigma_2_yy[i];
-        const real uhs_Sigma_2_zz = m->uhs_Sigma_2_zz[i];
-        const real uhs_h_2_y = m->uhs_h_2_y[i];
-        const real uhs_h_2_z = m->uhs_h_2_z[i];
-        const real uhs_mu_2_o_x = uhs_B_2_o_yx*uhs_J_2_xy + uhs_B_2_o_zx*uhs_J_2_xz +
-            uhs_B_2_o_zy*uhs_Sigma_2_yy + uhs_Sigma_2_zz*uhs_alpha_1_o_t + uhs_g_r1_x*uhs_h_2_z +
-            uhs_g_r3_y*uhs_h_2_y - uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3);
-        const real uhs_Sigma_2_xx = m->uhs_Sigma_2_xx[i];
-        const real uhs_h_2_x = m->uhs_h_2_x[i];
-        const real uhs_mu_2_o_y = uhs_B_2_o_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x -
-            uhs_B_2_o_zx*uhs_Sigma_2_xx - uhs_B_2_o_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t -
-            uhs_W_2_t_3) - uhs_Sigma_2_zz*uhs_alpha_1_o_t_2 - uhs_g_r3_x*uhs_h_2_y;
-        const real uhs_mu_2_o_z = uhs_B_2_o_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_o_t +
-            uhs_J_2_yz*uhs_alpha_1_o_t_2 - uhs_B_2_o_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t -
-            uhs_W_2_t_2) - uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x;
+        const real uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
+        const real uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
+        const real uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2;
+        const real uhs_mu_2_t = m->uhs_mu_2_t[i];
+        const real uhs_mu_2_t_2 = m->uhs_mu_2_t_2[i];
+        const real uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1;
+        const real uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1;
+        const real uhs_mu_2_t_3 = m->uhs_mu_2_t_3[i];
+        const real uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_mu_2_t_3*uhs_s_2;
+        const real uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_o_t_4*uhs_s_2;
+        const real uhs_Sigma_2_in_axes2_yy = m->uhs_Sigma_2_in_axes2_yy[i];
+        const real uhs_Sigma_2_in_axes2_zz = m->uhs_Sigma_2_in_axes2_zz[i];
+        const real uhs_h_2_in_spec2_y = m->uhs_h_2_in_spec2_y[i];
+        const real uhs_h_2_in_spec2_z = m->uhs_h_2_in_spec2_z[i];
+        const real uhs_mu_2_o_in_axes2_x = uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy +
+            uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
+            uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y
+            + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_o_t_2 -
+            uhs_mu_2_o_t_3);
+        const real uhs_Sigma_2_in_axes2_xx = m->uhs_Sigma_2_in_axes2_xx[i];
+        const real uhs_h_2_in_spec2_x = m->uhs_h_2_in_spec2_x[i];
+        const real uhs_mu_2_o_in_axes2_y = uhs_B_2_o_in_axes2_xy*uhs_J_2_in_spec2_yz +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+            - uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_o_t -
+            uhs_mu_2_o_t_3) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y;
+        const real uhs_mu_2_o_in_axes2_z = uhs_B_2_o_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x -
+            uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_o_t -
+            uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x;
         /* (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real uhs_N_2_o_x = uhs_mu_2_o_x + uhs_mu_3_o_z;
-        const real uhs_N_2_o_y = uhs_mu_2_o_y + uhs_c_3_t*uhs_mu_3_o_x - uhs_mu_3_o_y*uhs_s_3;
-        const real uhs_N_2_o_z = uhs_mu_2_o_z + uhs_c_3_t*uhs_mu_3_o_y + uhs_mu_3_o_x*uhs_s_3;
-        /* (uhs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real uhs_G_o_t = inv_uhs_root_2*uhs_N_2_o_z;
-        const real uhs_G_o_t_2 = inv_uhs_v_1_r0_y*(uhs_G_o_t*uhs_v_1_r0_x + uhs_N_2_o_y*uhs_c_2 -
-            uhs_N_2_o_x*uhs_s_2);
+        const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
+        const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y +
+            uhs_e_2_in_axes3_y*uhs_mu_3_o_in_axes3_x - uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y;
+        const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z +
+            uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x + uhs_e_2_in_axes3_y*uhs_mu_3_o_in_axes3_y;
+        /* (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real uhs_J_2_in_spec2_yy = m->uhs_J_2_in_spec2_yy[i];
+        const real uhs_d_Gamma_2_t = inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy +
+            uhs_e_2_in_axes3_x*(uhs_Jc_2_t_3 + uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x) +
+            uhs_e_2_in_axes3_y*(uhs_Jc_2_t + uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_y));
+        const real uhs_d_Gamma_2_in_axes2_z = inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_in_axes1_xz -
+            uhs_d_Gamma_2_t*uhs_v_1_in_axes2_y);
+        const real uhs_d_Gamma_2_in_axes2_x = inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz -
+            uhs_h_3_in_axes2_y;
+        const real uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x;
+        const real uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_y -
+            uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x;
+        /* (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_xz;
+        const real uhs_J_2_in_spec2_zz = m->uhs_J_2_in_spec2_zz[i];
+        const real uhs_Jc_2_in_axes2_xx = m->uhs_Jc_2_in_axes2_xx[i];
+        const real uhs_d_Gamma_1_t_2 = uhs_c_2*(uhs_Jc_2_in_axes2_xy*uhs_s_2 +
+            uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_2*uhs_e_2_in_axes3_y -
+            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x)) + uhs_s_2*(uhs_Jc_2_in_axes2_xx*uhs_s_2 +
+            uhs_Jc_2_in_axes2_xy*uhs_c_2) - uhs_d_Gamma_1_t*uhs_v_1_in_axes2_y;
+        const real uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3;
+        const real uhs_d_Gamma_1_in_axes1_z = uhs_c_2*uhs_d_Gamma_1_t + uhs_d_Gamma_1_t_3*uhs_s_2;
+        const real uhs_d_Gamma_1_in_axes1_x = inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 +
+            uhs_h_3_in_axes2_y*uhs_s_2 - uhs_c_2*uhs_h_3_in_spec3_x;
+        const real uhs_d_Gamma_1_in_axes1_y = uhs_c_2*uhs_d_Gamma_1_t_3 +
+            uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y + uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_z -
+            uhs_d_Gamma_1_t*uhs_s_2;
+        const real uhs_d_Gamma_1_in_axes3_z = uhs_c_2*uhs_d_Gamma_1_in_axes1_y +
+            uhs_d_Gamma_1_in_axes1_z*uhs_s_2;
+        const real uhs_d_Gamma_1_t_4 = uhs_c_2*uhs_d_Gamma_1_in_axes1_z -
+            uhs_d_Gamma_1_in_axes1_y*uhs_s_2;
+        const real uhs_d_Gamma_1_in_axes3_y = uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_y -
+            uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x;
+        /* (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real uhs_d_c_in_axes3_xx = uhs_h_3_in_spec3_z*uhs_s_2*uhs_w_1_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_x) -
+            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_x +
+            uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_y) -
+            uhs_w_2_in_axes3_x*(uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_y +
+            uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_x);
+        const real uhs_d_c_in_axes3_xy = uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_z -
+            uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x -
+            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_y);
+        const real uhs_d_phi_3_t = m->uhs_d_phi_3_t[i];
+        const real uhs_d_c_in_axes3_xz = uhs_d_phi_3_t -
+            uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
+            uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x;
+        const real uhs_d_phi_3_in_axes3_yz = m->uhs_d_phi_3_in_axes3_yz[i];
+        const real uhs_d_c_in_axes3_yz = -uhs_d_phi_3_in_axes3_yz -
+            uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
+            uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y;
         /* (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real uhs_c_o_x = uhs_G_o_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) -
-            uhs_B_3_o_xy*uhs_h_3_z - uhs_B_3_o_xz*uhs_h_3_x - uhs_G_o_t*uhs_c_3_t;
-        const real uhs_c_o_y = uhs_G_o_t*uhs_s_3 + uhs_G_o_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t +
-            uhs_W_3_t_3) - uhs_B_3_o_yx*uhs_h_3_y - uhs_B_3_o_yz*uhs_h_3_x;
-        const real uhs_c_o_z = uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_z -
-            uhs_B_3_o_zx*uhs_h_3_y - uhs_B_3_o_zy*uhs_h_3_z;
+        const real uhs_c_o_t = inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z;
+        const real uhs_c_o_t_2 = inv_uhs_v_1_in_axes2_z*(uhs_c_o_t*uhs_v_1_in_axes2_y -
+            uhs_N_2_o_in_axes2_x*uhs_s_2 - uhs_N_2_o_in_axes2_y*uhs_c_2);
+        const real uhs_c_o_in_axes3_x = uhs_c_o_t_2*uhs_e_2_in_axes3_x +
+            uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
+            uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x -
+            uhs_c_o_t*uhs_e_2_in_axes3_y;
+        const real uhs_c_o_in_axes3_y = uhs_c_o_t*uhs_e_2_in_axes3_x +
+            uhs_c_o_t_2*uhs_e_2_in_axes3_y + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_o_t) -
+            uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x;
+        const real uhs_c_o_in_axes3_z = uhs_W_2_t_3*uhs_h_3_in_spec3_x -
+            inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z - uhs_B_3_o_in_axes3_zx*uhs_h_3_in_spec3_y
+            - uhs_B_3_o_in_axes3_zy*uhs_h_3_in_spec3_z;
+        /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real uhs_Q_t = uhs_d_c_in_axes3_xx + uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
+            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y +
+            uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y);
+        const real uhs_Q_t_2 = R(0.5)*uhs_Q_t;
+        const real uhs_d_G_in_axes3_zz = m->uhs_d_G_in_axes3_zz[i];
+        const real uhs_Q_t_3 = uhs_d_G_in_axes3_zz + uhs_d_c_in_axes3_xx;
+        const real uhs_Q_t_4 = R(0.5)*uhs_Q_t_3;
+        const real uhs_Q_t_5 = axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xy +
+            axis_z_uhs_axes3_x*uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_x*uhs_Q_t_2;
+        const real uhs_Q_t_6 = axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xy +
+            axis_z_uhs_axes3_y*uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_y*uhs_Q_t_2;
+        const real uhs_Q_t_7 = axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xy +
+            axis_z_uhs_axes3_z*uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_z*uhs_Q_t_2;
+        const real uhs_Q_t_8 = axis_z_uhs_axes3_x*uhs_Q_t_4 -
+            axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xz;
+        const real uhs_Q_t_9 = axis_z_uhs_axes3_y*uhs_Q_t_4 -
+            axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xz;
+        const real uhs_Q_t_10 = axis_z_uhs_axes3_z*uhs_Q_t_4 -
+            axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz;
+        const real uhs_Q_t_11 = axis_y_uhs_axes3_x*uhs_Q_t_5 - axis_z_uhs_axes3_x*uhs_Q_t_8;
+        const real uhs_Q_xx = -2*uhs_Q_t_11 - uhs_d_c_in_axes3_xx;
+        const real uhs_Q_xy = axis_z_uhs_axes3_x*uhs_Q_t_9 + axis_z_uhs_axes3_y*uhs_Q_t_8 -
+            axis_y_uhs_axes3_x*uhs_Q_t_6 - axis_y_uhs_axes3_y*uhs_Q_t_5;
+        const real uhs_Q_xz = axis_z_uhs_axes3_x*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_8 -
+            axis_y_uhs_axes3_x*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_5;
+        const real uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - axis_z_uhs_axes3_y*uhs_Q_t_9;
+        const real uhs_Q_yy = -2*uhs_Q_t_12 - uhs_d_c_in_axes3_xx;
+        const real uhs_Q_yz = axis_z_uhs_axes3_y*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_9 -
+            axis_y_uhs_axes3_y*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_6;
+        const real uhs_Q_t_13 = axis_y_uhs_axes3_z*uhs_Q_t_7 - axis_z_uhs_axes3_z*uhs_Q_t_10;
+        const real uhs_Q_zz = -2*uhs_Q_t_13 - uhs_d_c_in_axes3_xx;
         /* (uhs-U) velocity and gravity terms of the leg force */
-        const real uhs_U_in_base_x = -axis_x_uhs_axes3_x*uhs_c_o_x -
-            axis_y_uhs_axes3_in_base_x*uhs_c_o_y - uhs_axis_z_x*uhs_c_o_z;
-        const real uhs_U_in_base_y = -axis_x_uhs_axes3_y*uhs_c_o_x -
-            axis_y_uhs_axes3_in_base_y*uhs_c_o_y - uhs_axis_z_y*uhs_c_o_z;
-        const real uhs_U_in_base_z = -axis_x_uhs_axes3_z*uhs_c_o_x -
-            axis_y_uhs_axes3_in_base_z*uhs_c_o_y - uhs_axis_z_z*uhs_c_o_z;
+        const real uhs_U_x = -axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x -
+            axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y - axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z;
+        const real uhs_U_y = -axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x -
+            axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y - axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z;
+        const real uhs_U_z = -axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x -
+            axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y - axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z;
+        /* (M_ta) coupling block of M */
+        const real uhs_M_ta_t = -uhs_Q_xy*uhs_q_z;
+        const real uhs_M_ta_t_2 = uhs_Q_xz*uhs_q_y;
+        const real uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2;
+        const real uhs_M_ta_t_4 = uhs_Q_xx*uhs_q_z - uhs_Q_xz*uhs_q_x;
+        const real uhs_M_ta_t_5 = uhs_Q_xy*uhs_q_x - uhs_Q_xx*uhs_q_y;
+        const real uhs_M_ta_t_6 = uhs_Q_yz*uhs_q_y - uhs_Q_yy*uhs_q_z;
+        const real uhs_M_ta_t_7 = uhs_Q_yz*uhs_q_x;
+        const real uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7;
+        const real uhs_M_ta_t_9 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y;
+        const real uhs_M_ta_t_10 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z;
+        const real uhs_M_ta_t_11 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x;
+        const real uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real uhs_M_aa_t = uhs_M_ta_t_10*uhs_q_y - uhs_M_ta_t_6*uhs_q_z;
+        const real uhs_M_aa_t_2 = uhs_M_ta_t_11*uhs_q_y + uhs_M_ta_t_8*uhs_q_z;
+        const real uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_y - uhs_M_ta_t_9*uhs_q_z;
+        const real uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_z - uhs_M_ta_t_11*uhs_q_x;
+        const real uhs_M_aa_t_5 = uhs_M_ta_t_5*uhs_q_z - uhs_M_ta_t_12*uhs_q_x;
+        const real uhs_M_aa_t_6 = uhs_M_ta_t_9*uhs_q_x - uhs_M_ta_t_5*uhs_q_y;
         /* (Z_a) rotational part of Z */
-        const real uhs_Z_a_t = uhs_U_in_base_z*uhs_q_in_base_y - uhs_U_in_base_y*uhs_q_in_base_z;
-        const real uhs_Z_a_t_2 = uhs_U_in_base_x*uhs_q_in_base_z -
-            uhs_U_in_base_z*uhs_q_in_base_x;
-        const real uhs_Z_a_t_3 = uhs_U_in_base_y*uhs_q_in_base_x -
-            uhs_U_in_base_x*uhs_q_in_base_y;
-        /* (uhs-w_3) reciprocal vector 3 */
-        const real uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x;
-        const real uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y;
-        const real uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z;
+        const real uhs_Z_a_t = uhs_U_z*uhs_q_y - uhs_U_y*uhs_q_z;
+        const real uhs_Z_a_t_2 = uhs_U_x*uhs_q_z - uhs_U_z*uhs_q_x;
+        const real uhs_Z_a_t_3 = uhs_U_y*uhs_q_x - uhs_U_x*uhs_q_y;
         /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-        const real uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2;
-        const real uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3;
-        const real uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t;
-        terms[0*count + k] = add ? terms[0*count + k] + uhs_Q_t_12 : uhs_Q_t_12;  /* total_uhs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + uhs_Q_t_13 : uhs_Q_t_13;  /* total_uhs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + uhs_Q_t_14 : uhs_Q_t_14;  /* total_uhs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + uhs_Q_t_16 : uhs_Q_t_16;  /* total_uhs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + uhs_Q_t_17 : uhs_Q_t_17;  /* total_uhs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + uhs_Q_t_19 : uhs_Q_t_19;  /* total_uhs_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + uhs_M_ta_t_3 : uhs_M_ta_t_3;  /* total_uhs_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + uhs_M_ta_t_4 : uhs_M_ta_t_4;  /* total_uhs_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + uhs_M_ta_t_5 : uhs_M_ta_t_5;  /* total_uhs_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + uhs_M_ta_t_6 : uhs_M_ta_t_6;  /* total_uhs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + uhs_M_ta_t_8 : uhs_M_ta_t_8;  /* total_uhs_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + uhs_M_ta_t_9 : uhs_M_ta_t_9;  /* total_uhs_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + uhs_M_ta_t_10 : uhs_M_ta_t_10;  /* total_uhs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + uhs_M_ta_t_11 : uhs_M_ta_t_11;  /* total_uhs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + uhs_M_ta_t_12 : uhs_M_ta_t_12;  /* total_uhs_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + uhs_M_aa_t : uhs_M_aa_t;  /* total_uhs_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + uhs_M_aa_t_2 : uhs_M_aa_t_2;  /* total_uhs_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + uhs_M_aa_t_3 : uhs_M_aa_t_3;  /* total_uhs_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + uhs_M_aa_t_4 : uhs_M_aa_t_4;  /* total_uhs_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + uhs_M_aa_t_5 : uhs_M_aa_t_5;  /* total_uhs_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + uhs_M_aa_t_6 : uhs_M_aa_t_6;  /* total_uhs_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + uhs_U_in_base_x : uhs_U_in_base_x;  /* total_uhs_x */
-        terms[22*count + k] = add ? terms[22*count + k] + uhs_U_in_base_y : uhs_U_in_base_y;  /* total_uhs_y */
-        terms[23*count + k] = add ? terms[23*count + k] + uhs_U_in_base_z : uhs_U_in_base_z;  /* total_uhs_z */
-        terms[24*count + k] = add ? terms[24*count + k] + uhs_Z_a_t : uhs_Z_a_t;  /* total_uhs_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + uhs_Z_a_t_2 : uhs_Z_a_t_2;  /* total_uhs_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + uhs_Z_a_t_3 : uhs_Z_a_t_3;  /* total_uhs_z_2 */
-        o[0*count + k] = uhs_w_3_t;
-        o[1*count + k] = uhs_w_3_t_2;
-        o[2*count + k] = uhs_w_3_t_3;
+        const real uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y;
+        const real uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z;
+        const real uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + uhs_Q_xx : uhs_Q_xx;  /* M_tt_uhs_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + uhs_Q_xy : uhs_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + uhs_Q_xz : uhs_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + uhs_Q_yy : uhs_Q_yy;  /* M_tt_uhs_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + uhs_Q_yz : uhs_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + uhs_Q_zz : uhs_Q_zz;  /* M_tt_uhs_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + uhs_M_ta_t_3 : uhs_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + uhs_M_ta_t_4 : uhs_M_ta_t_4;  /* M_ta_uhs_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + uhs_M_ta_t_5 : uhs_M_ta_t_5;  /* M_ta_uhs_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + uhs_M_ta_t_6 : uhs_M_ta_t_6;  /* M_ta_uhs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + uhs_M_ta_t_8 : uhs_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + uhs_M_ta_t_9 : uhs_M_ta_t_9;  /* M_ta_uhs_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + uhs_M_ta_t_10 : uhs_M_ta_t_10;  /* M_ta_uhs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + uhs_M_ta_t_11 : uhs_M_ta_t_11;  /* M_ta_uhs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + uhs_M_ta_t_12 : uhs_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + uhs_M_aa_t : uhs_M_aa_t;  /* M_aa_uhs_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + uhs_M_aa_t_2 : uhs_M_aa_t_2;  /* M_aa_uhs_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + uhs_M_aa_t_3 : uhs_M_aa_t_3;  /* M_aa_uhs_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + uhs_M_aa_t_4 : uhs_M_aa_t_4;  /* M_aa_uhs_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + uhs_M_aa_t_5 : uhs_M_aa_t_5;  /* M_aa_uhs_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + uhs_M_aa_t_6 : uhs_M_aa_t_6;  /* M_aa_uhs_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + uhs_U_x : uhs_U_x;  /* Z_t_uhs_x */
+        terms[22*count + k] = add ? terms[22*count + k] + uhs_U_y : uhs_U_y;  /* Z_t_uhs_y */
+        terms[23*count + k] = add ? terms[23*count + k] + uhs_U_z : uhs_U_z;  /* Z_t_uhs_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + uhs_Z_a_t : uhs_Z_a_t;  /* Z_a_uhs_x */
+        terms[25*count + k] = add ? terms[25*count + k] + uhs_Z_a_t_2 : uhs_Z_a_t_2;  /* Z_a_uhs_y */
+        terms[26*count + k] = add ? terms[26*count + k] + uhs_Z_a_t_3 : uhs_Z_a_t_3;  /* Z_a_uhs_z */
+        /* (uhs-w_3) reciprocal vector 3 */
+        o[0*count + k] = uhs_w_3_x;
+        o[1*count + k] = uhs_w_3_y;
+        o[2*count + k] = uhs_w_3_z;
+        /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = uhs_H_a_3_x;
         o[4*count + k] = uhs_H_a_3_y;
         o[5*count + k] = uhs_H_a_3_z;
-        o[7*count + k] = (uhs_w_3_t + (uhs_w_3_t_2 + uhs_w_3_t_3)) + (uhs_H_a_3_x + (uhs_H_a_3_y +
+        o[7*count + k] = (uhs_w_3_x + (uhs_w_3_y + uhs_w_3_z)) + (uhs_H_a_3_x + (uhs_H_a_3_y +
             uhs_H_a_3_z));
         const real uhs_size_t = m->uhs_size_t[i];
         const real uhs_size = m->uhs_size[i];
-        o[6*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) + UNLESS(magnitude(uhs_v_1_r0_y) >
-            TOLERANCE*uhs_size);
+        o[6*count + k] = UNLESS(magnitude(uhs_h_3_t_6) > TOLERANCE*TOLERANCE*uhs_size_t) +
+            UNLESS(magnitude(uhs_h_3_t_8) > TOLERANCE*TOLERANCE*uhs_size_t) +
+            UNLESS(magnitude(uhs_h_3_t_9) > TOLERANCE*uhs_size) +
+            UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*uhs_size);
     }
 }
 
@@ -2037,101 +2102,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_uhs_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_uhs_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_uhs_xx;
-        const real total_uhs_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_uhs_yy;
-        const real total_uhs_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_uhs_zz;
+        const real M_tt_xx = M_tt_uhs_xx + m_star;
+        const real M_tt_uhs_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_uhs_yy + m_star;
+        const real M_tt_uhs_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_uhs_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_uhs_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_uhs_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_uhs_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_uhs_xz_2 - h_star_in_base_y;
-        const real total_uhs_yx = sums[9*w + k];
-        const real M_ta_yx = total_uhs_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_uhs_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_uhs_yz_2;
-        const real total_uhs_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_uhs_zx;
-        const real total_uhs_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_uhs_zy;
+        const real M_ta_uhs_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_uhs_xy + h_star_z;
+        const real M_ta_uhs_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_uhs_xz - h_star_y;
+        const real M_ta_uhs_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_uhs_yx - h_star_z;
+        const real M_ta_uhs_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_uhs_yz + h_star_x;
+        const real M_ta_uhs_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_uhs_zx + h_star_y;
+        const real M_ta_uhs_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_uhs_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_uhs_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_uhs_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_uhs_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_uhs_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_uhs_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_uhs_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_uhs_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_uhs_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_uhs_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_uhs_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_uhs_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_uhs_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_uhs_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_uhs_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_uhs_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_uhs_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_uhs_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_uhs_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_uhs_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_uhs_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_uhs_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_uhs_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_uhs_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_uhs_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_uhs_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_uhs_x;
+        const real Z_t_uhs_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_uhs_x;
         const real Z_p_y = s[28*w + k];
-        const real total_uhs_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_uhs_y;
+        const real Z_t_uhs_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_uhs_y;
         const real Z_p_z = s[29*w + k];
-        const real total_uhs_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_uhs_z;
+        const real Z_t_uhs_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_uhs_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_uhs_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_uhs_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_uhs_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_uhs_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_uhs_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_uhs_z_2;
+        const real Z_a_uhs_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_uhs_x + Z_q_x;
+        const real Z_a_uhs_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_uhs_y + Z_q_y;
+        const real Z_a_uhs_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_uhs_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_uhs_xy = sums[1*w + k];
-        M[1*w + k] = -total_uhs_xy;
-        M[6*w + k] = -total_uhs_xy;
-        const real total_uhs_xz = sums[2*w + k];
-        M[2*w + k] = -total_uhs_xz;
-        M[12*w + k] = -total_uhs_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_uhs_yz = sums[4*w + k];
-        M[8*w + k] = -total_uhs_yz;
-        M[13*w + k] = -total_uhs_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_uhs_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_uhs_xx_2;
-        M[18*w + k] = total_uhs_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_uhs_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_uhs_yy_2;
-        M[25*w + k] = -total_uhs_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_uhs_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_uhs_zz_2;
-        M[32*w + k] = -total_uhs_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2141,17 +2209,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_uhs_xy + total_uhs_xz)) + (M_tt_yy + (total_uhs_yz +
-            M_tt_zz))) + ((total_uhs_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_uhs_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_uhs_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -2222,37 +2291,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2265,15 +2340,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2284,274 +2359,286 @@ INLINE void M_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (uhs-S) from the base point to the connection point */
+        /* (uhs-h_3) first moment of link 3 about the connection point */
         const real R_xx = s[3*w + j];
         const real R_xy = s[4*w + j];
         const real R_xz = s[5*w + j];
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
-        /* (uhs-px_1) component along the reference direction */
+        const real uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z;
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
         const real uhs_base_frame_zx = m->uhs_base_frame_zx[i];
-        const real uhs_px_1 = uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx +
-            uhs_S_z*uhs_base_frame_zx;
-        /* (uhs-py_1) component across the reference direction */
+        const real uhs_h_3_t_4 = uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3;
         const real uhs_base_frame_xy = m->uhs_base_frame_xy[i];
         const real uhs_base_frame_yy = m->uhs_base_frame_yy[i];
         const real uhs_base_frame_zy = m->uhs_base_frame_zy[i];
-        const real uhs_py_1 = uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy +
-            uhs_S_z*uhs_base_frame_zy;
-        /* (uhs-rho2_1) squared amplitude */
-        const real uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1;
-        /* (uhs-root_1) root, with the sign of the branch */
-        const real uhs_branch_1 = m->uhs_branch_1[i];
-        const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
-        /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real uhs_h_3_t_5 = uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3;
+        const real uhs_h_3_t_6 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5;
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
-            uhs_S_z*uhs_base_frame_zz;
-        /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
-        /* (uhs-root_2) root, with the sign of the branch */
+        const real uhs_h_3_t_7 = uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3;
+        const real uhs_h_3_t_8 = uhs_h_3_t_6 + uhs_h_3_t_7*uhs_h_3_t_7;
         const real uhs_branch_2 = m->uhs_branch_2[i];
-        const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
-        /* (uhs-x_3) from the origin of joint 3 to the connection point */
+        const real uhs_h_3_t_9 = uhs_branch_2*root(uhs_h_3_t_8);
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
-        /* (uhs-q_3) displacement of joint 3 */
+        const real uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x;
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t;
-        /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
-        /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_t = uhs_c_2*uhs_c_3_t;
-        const real uhs_v_1_t_2 = uhs_c_2*uhs_s_3;
-        const real uhs_v_1_t_3 = uhs_root_2*uhs_v_1_t_2;
-        const real uhs_v_1_t_4 = uhs_root_2*uhs_v_1_t;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_root_2 = 1/uhs_root_2;
-        const real uhs_axis_z_x = inv_uhs_root_2*uhs_S_x;
-        const real uhs_axis_z_y = inv_uhs_root_2*uhs_S_y;
-        const real uhs_axis_z_z = inv_uhs_root_2*uhs_S_z;
-        const real uhs_w_1_t = uhs_s_2*uhs_s_3;
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-        const real uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
-        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_in_base_x = axis_y_uhs_axes3_r4_x*uhs_base_frame_xx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*uhs_v_1_t_2;
-        const real axis_y_uhs_axes3_in_base_y = axis_y_uhs_axes3_r4_x*uhs_base_frame_yx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*uhs_v_1_t_2;
-        const real axis_y_uhs_axes3_in_base_z = axis_y_uhs_axes3_r4_x*uhs_base_frame_zx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*uhs_v_1_t_2;
-        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*uhs_axis_z_z -
-            axis_y_uhs_axes3_in_base_z*uhs_axis_z_y;
-        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*uhs_axis_z_x -
-            axis_y_uhs_axes3_in_base_x*uhs_axis_z_z;
-        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*uhs_axis_z_y -
-            axis_y_uhs_axes3_in_base_y*uhs_axis_z_x;
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_3 - uhs_s_3*uhs_v_1_t_4;
-        const real uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_4 + uhs_s_3*uhs_v_1_t_3;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_v_1_r0_y = 1/uhs_v_1_r0_y;
-        const real uhs_w_1_t_2 = inv_uhs_v_1_r0_y*uhs_s_3;
-        const real uhs_w_1_t_3 = inv_uhs_v_1_r0_y*uhs_c_3_t;
-        /* (uhs-w_2) reciprocal vector 2 */
-        const real uhs_w_2_t = inv_uhs_root_2*inv_uhs_v_1_r0_y*uhs_v_1_r0_x;
-        const real uhs__r1_x = inv_uhs_root_2*uhs_c_3_t - uhs_s_3*uhs_w_2_t;
-        const real uhs__r1_y = -inv_uhs_root_2*uhs_s_3 - uhs_c_3_t*uhs_w_2_t;
-        /* (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real uhs_d_alpha_3_t = uhs_s_2*uhs_w_1_t_3;
-        /* (uhs-L_c_3) moment about joint 3 that accelerates joint 3, per unit */
-        const real uhs_J_3_xy = m->uhs_J_3_xy[i];
-        const real uhs_J_3_xz = m->uhs_J_3_xz[i];
-        const real uhs_L_c_3_r0_y = uhs_J_3_xy*uhs_s_3 + uhs_J_3_xz*uhs_c_3_t;
-        /* (uhs-D_1_3) inertia of joint 3 along joint 1 */
-        const real uhs_J_3_xx = m->uhs_J_3_xx[i];
-        const real uhs_D_1_3 = uhs_J_3_xx*uhs_s_2 + uhs_J_3_xz*uhs_v_1_t_2 - uhs_J_3_xy*uhs_v_1_t;
+        const real uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_h_3_t_10);
+        const real uhs_e_2_in_axes3_y = sine(uhs_h_3_t_11);
+        const real uhs_e_2_in_axes3_x = cosine(uhs_h_3_t_11);
+        const real uhs_h_3_in_spec3_y = m->uhs_h_3_in_spec3_y[i];
+        const real uhs_h_3_in_spec3_z = m->uhs_h_3_in_spec3_z[i];
+        const real uhs_h_3_in_axes2_y = uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_y -
+            uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z;
         /* (uhs-J_3) inertia tensor of link 3 about the connection point */
-        const real uhs_J_3_yz = m->uhs_J_3_yz[i];
-        const real uhs_J_3_t = uhs_J_3_yz*uhs_s_3;
-        const real uhs_J_3_yy = m->uhs_J_3_yy[i];
-        const real uhs__x = uhs_J_3_yy*uhs_c_3_t - uhs_J_3_t;
-        const real uhs_J_3_t_2 = uhs_J_3_yz*uhs_c_3_t;
-        const real uhs_J_3_zz = m->uhs_J_3_zz[i];
-        const real uhs__x_2 = uhs_J_3_t_2 - uhs_J_3_zz*uhs_s_3;
+        const real uhs_J_3_in_spec3_xy = m->uhs_J_3_in_spec3_xy[i];
+        const real uhs_J_3_in_spec3_xz = m->uhs_J_3_in_spec3_xz[i];
+        const real uhs_J_3_in_axes2_xz = uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x +
+            uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_y;
+        /* (uhs-root_1) root, with the sign of the branch */
+        const real uhs_branch_1 = m->uhs_branch_1[i];
+        const real uhs_root_1 = uhs_branch_1*root(uhs_h_3_t_6);
+        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_uhs_h_3_t_6 = 1/uhs_h_3_t_6;
+        const real uhs_c_1 = -inv_uhs_h_3_t_6*uhs_h_3_t_5*uhs_root_1;
+        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real uhs_s_1 = inv_uhs_h_3_t_6*uhs_h_3_t_4*uhs_root_1;
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_uhs_h_3_t_8 = 1/uhs_h_3_t_8;
+        const real uhs_c_2 = -inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1;
+        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real uhs_s_2 = inv_uhs_h_3_t_8*uhs_h_3_t_7*uhs_h_3_t_9;
+        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
+        const real uhs_e_1_in_axes3_x = uhs_c_2*uhs_e_2_in_axes3_y;
+        const real uhs_e_1_in_axes3_y = -uhs_c_2*uhs_e_2_in_axes3_x;
+        const real uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9;
+        const real uhs_v_1_in_axes3_y = -uhs_e_1_in_axes3_x*uhs_h_3_t_9;
+        const real uhs_v_1_in_axes2_y = uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_x -
+            uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_y;
+        const real uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_y;
+        /* (uhs-w_1) reciprocal vector 1 */
+        const real inv_uhs_v_1_in_axes2_z = 1/uhs_v_1_in_axes2_z;
+        const real uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x;
+        const real uhs_w_1_in_axes3_y = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_y;
+        /* (uhs-w_2) reciprocal vector 2 */
+        const real inv_uhs_h_3_t_9 = 1/uhs_h_3_t_9;
+        const real uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_in_axes2_y;
+        const real uhs_w_2_in_axes3_x = inv_uhs_h_3_t_9*uhs_e_2_in_axes3_y -
+            uhs_e_2_in_axes3_x*uhs_w_2_t;
+        const real uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x -
+            uhs_e_2_in_axes3_y*uhs_w_2_t;
+        /* (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real uhs_d_alpha_3_in_axes3_zy = uhs_s_2*uhs_w_1_in_axes3_y;
+        /* (uhs-D_1_3) inertia of joint 3 along joint 1 */
+        const real uhs_J_3_in_spec3_xx = m->uhs_J_3_in_spec3_xx[i];
+        const real uhs_D_1_3 = uhs_J_3_in_spec3_xx*uhs_s_2 +
+            uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x + uhs_J_3_in_spec3_xz*uhs_e_1_in_axes3_y;
         /* (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real uhs_J_2_xz = m->uhs_J_2_xz[i];
-        const real uhs_Jc_2_xy = uhs_J_3_xy*uhs_c_3_t - uhs_J_2_xz - uhs_J_3_xz*uhs_s_3;
-        /* (uhs-L_c_2) moment about joint 2 that accelerates joint 2, per unit */
-        const real uhs_J_2_xy = m->uhs_J_2_xy[i];
-        const real uhs_J_2_yz = m->uhs_J_2_yz[i];
-        const real uhs_L_c_2_r0_y = uhs_s_2*(uhs_J_2_xy + uhs_L_c_3_r0_y) -
-            uhs_c_2*(uhs__x*uhs_s_3 + uhs__x_2*uhs_c_3_t - uhs_J_2_yz);
-        /* (uhs-h_3) first moment of link 3 about the connection point */
-        const real uhs_h_3_y = m->uhs_h_3_y[i];
-        const real uhs_h_3_z = m->uhs_h_3_z[i];
-        const real uhs_h_3_r1_x = uhs_c_3_t*uhs_h_3_y - uhs_h_3_z*uhs_s_3;
+        const real uhs_J_3_in_spec3_yz = m->uhs_J_3_in_spec3_yz[i];
+        const real uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x;
+        const real uhs_J_3_in_spec3_yy = m->uhs_J_3_in_spec3_yy[i];
+        const real uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_y - uhs_Jc_2_t;
+        const real uhs_Jc_2_t_3 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_y;
+        const real uhs_J_3_in_spec3_zz = m->uhs_J_3_in_spec3_zz[i];
+        const real uhs_Jc_2_t_4 = uhs_Jc_2_t_3 - uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x;
+        const real uhs_J_2_in_spec2_xz = m->uhs_J_2_in_spec2_xz[i];
+        const real uhs_Jc_2_in_axes2_xy = uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_y -
+            uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x;
+        const real uhs_J_2_in_spec2_xy = m->uhs_J_2_in_spec2_xy[i];
+        const real uhs_J_2_in_spec2_yz = m->uhs_J_2_in_spec2_yz[i];
+        const real uhs_Jc_2_in_axes1_xz = uhs_c_2*(uhs_Jc_2_t_2*uhs_e_2_in_axes3_x +
+            uhs_Jc_2_t_4*uhs_e_2_in_axes3_y - uhs_J_2_in_spec2_yz) + uhs_s_2*(uhs_J_2_in_spec2_xy
+            + uhs_J_3_in_axes2_xz);
         /* (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real uhs_J_2_yy = m->uhs_J_2_yy[i];
-        const real uhs_d_Gamma_2_t = inv_uhs_root_2*(uhs_J_2_yy + uhs_c_3_t*(uhs_J_3_t +
-            uhs_J_3_zz*uhs_c_3_t) + uhs_s_3*(uhs_J_3_t_2 + uhs_J_3_yy*uhs_s_3));
-        const real uhs_d_Gamma_2_t_2 = inv_uhs_v_1_r0_y*(uhs_L_c_2_r0_y -
-            uhs_d_Gamma_2_t*uhs_v_1_r0_x);
-        const real uhs_d_Gamma_2_x = inv_uhs_joint3_pitch*uhs_L_c_3_r0_y - uhs_h_3_r1_x;
-        const real uhs_h_3_x = m->uhs_h_3_x[i];
-        const real uhs_d_Gamma_2_y = uhs_d_Gamma_2_t + uhs_h_3_x;
+        const real uhs_J_2_in_spec2_yy = m->uhs_J_2_in_spec2_yy[i];
+        const real uhs_d_Gamma_2_t = inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy +
+            uhs_e_2_in_axes3_x*(uhs_Jc_2_t_3 + uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x) +
+            uhs_e_2_in_axes3_y*(uhs_Jc_2_t + uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_y));
+        const real uhs_d_Gamma_2_in_axes2_z = inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_in_axes1_xz -
+            uhs_d_Gamma_2_t*uhs_v_1_in_axes2_y);
+        const real uhs_d_Gamma_2_in_axes2_x = inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz -
+            uhs_h_3_in_axes2_y;
+        const real uhs_h_3_in_spec3_x = m->uhs_h_3_in_spec3_x[i];
+        const real uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x;
+        const real uhs_d_Gamma_2_in_axes3_y = uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_y -
+            uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x;
         /* (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real uhs_d_Gamma_1_t = inv_uhs_root_2*uhs_L_c_2_r0_y;
-        const real uhs_J_2_zz = m->uhs_J_2_zz[i];
-        const real uhs_Jc_2_xx = m->uhs_Jc_2_xx[i];
-        const real uhs_d_Gamma_1_t_2 = uhs_s_2*(uhs_Jc_2_xx*uhs_s_2 - uhs_Jc_2_xy*uhs_c_2) -
-            uhs_c_2*(uhs_Jc_2_xy*uhs_s_2 - uhs_c_2*(uhs_J_2_zz + uhs__x*uhs_c_3_t -
-            uhs__x_2*uhs_s_3)) - uhs_d_Gamma_1_t*uhs_v_1_r0_x;
+        const real uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_xz;
+        const real uhs_J_2_in_spec2_zz = m->uhs_J_2_in_spec2_zz[i];
+        const real uhs_Jc_2_in_axes2_xx = m->uhs_Jc_2_in_axes2_xx[i];
+        const real uhs_d_Gamma_1_t_2 = uhs_c_2*(uhs_Jc_2_in_axes2_xy*uhs_s_2 +
+            uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_2*uhs_e_2_in_axes3_y -
+            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x)) + uhs_s_2*(uhs_Jc_2_in_axes2_xx*uhs_s_2 +
+            uhs_Jc_2_in_axes2_xy*uhs_c_2) - uhs_d_Gamma_1_t*uhs_v_1_in_axes2_y;
         const real uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3;
-        const real uhs__r0_y = uhs_d_Gamma_1_t_3*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_t;
-        const real uhs_d_Gamma_1_x = inv_uhs_v_1_r0_y*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_x +
-            uhs_h_3_r1_x*uhs_s_2;
-        const real uhs_d_Gamma_1_y = uhs_c_3_t*uhs_h_3_z + uhs_h_3_y*uhs_s_3 -
-            uhs_c_2*uhs_d_Gamma_1_t_3 - uhs_d_Gamma_1_t*uhs_s_2;
-        const real uhs_d_Gamma_1_r1_x = uhs__r0_y*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_y;
-        const real uhs_d_Gamma_1_r1_y = -uhs__r0_y*uhs_c_2 - uhs_d_Gamma_1_y*uhs_s_2;
-        const real uhs_d_Gamma_1_r3_y = uhs_c_3_t*uhs_d_Gamma_1_x - uhs_d_Gamma_1_r1_y*uhs_s_3;
-        /* (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real uhs_d_Gamma_2_r1_y = uhs_c_3_t*uhs_d_Gamma_2_t_2 - uhs_d_Gamma_2_y*uhs_s_3;
+        const real uhs_d_Gamma_1_in_axes1_z = uhs_c_2*uhs_d_Gamma_1_t + uhs_d_Gamma_1_t_3*uhs_s_2;
+        const real uhs_d_Gamma_1_in_axes1_x = inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 +
+            uhs_h_3_in_axes2_y*uhs_s_2 - uhs_c_2*uhs_h_3_in_spec3_x;
+        const real uhs_d_Gamma_1_in_axes1_y = uhs_c_2*uhs_d_Gamma_1_t_3 +
+            uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y + uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_z -
+            uhs_d_Gamma_1_t*uhs_s_2;
+        const real uhs_d_Gamma_1_in_axes3_z = uhs_c_2*uhs_d_Gamma_1_in_axes1_y +
+            uhs_d_Gamma_1_in_axes1_z*uhs_s_2;
+        const real uhs_d_Gamma_1_t_4 = uhs_c_2*uhs_d_Gamma_1_in_axes1_z -
+            uhs_d_Gamma_1_in_axes1_y*uhs_s_2;
+        const real uhs_d_Gamma_1_in_axes3_y = uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_y -
+            uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x;
         /* (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real uhs_d_c_xx = uhs_h_3_z*uhs_s_2*uhs_w_1_t_2 -
-            uhs__r1_x*(uhs_c_3_t*uhs_d_Gamma_2_y + uhs_d_Gamma_2_t_2*uhs_s_3) -
-            uhs_h_3_x*(uhs__r1_x*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_2) -
-            uhs_w_1_t_2*(uhs_c_3_t*uhs_d_Gamma_1_r1_y + uhs_d_Gamma_1_x*uhs_s_3);
-        const real uhs_d_c_xy = uhs_d_alpha_3_t*uhs_h_3_z - uhs__r1_x*uhs_d_Gamma_2_r1_y -
-            uhs_d_Gamma_1_r3_y*uhs_w_1_t_2 - uhs_h_3_x*(uhs__r1_y*uhs_c_3_t +
-            uhs_v_1_t_2*uhs_w_1_t_3);
+        const real uhs_d_c_in_axes3_xx = uhs_h_3_in_spec3_z*uhs_s_2*uhs_w_1_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_x) -
+            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_x +
+            uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_y) -
+            uhs_w_2_in_axes3_x*(uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_y +
+            uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_x);
+        const real uhs_d_c_in_axes3_xy = uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_z -
+            uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x -
+            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_y);
         const real uhs_d_phi_3_t = m->uhs_d_phi_3_t[i];
-        const real uhs_d_c_xz = uhs_d_phi_3_t - uhs__r1_x*uhs_d_Gamma_2_x -
-            uhs_d_Gamma_1_r1_x*uhs_w_1_t_2;
-        const real uhs_d_phi_3_t_2 = m->uhs_d_phi_3_t_2[i];
-        const real uhs_d_c_yz = -uhs_d_phi_3_t_2 - uhs__r1_y*uhs_d_Gamma_2_x -
-            uhs_d_Gamma_1_r1_x*uhs_w_1_t_3;
+        const real uhs_d_c_in_axes3_xz = uhs_d_phi_3_t -
+            uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
+            uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x;
+        const real uhs_d_phi_3_in_axes3_yz = m->uhs_d_phi_3_in_axes3_yz[i];
+        const real uhs_d_c_in_axes3_yz = -uhs_d_phi_3_in_axes3_yz -
+            uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
+            uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y;
         /* (uhs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real uhs_Q_t = uhs_d_c_xx + uhs__r1_y*uhs_d_Gamma_2_r1_y +
-            uhs_d_Gamma_1_r3_y*uhs_w_1_t_3 + uhs_d_alpha_3_t*uhs_h_3_y -
-            uhs_h_3_x*(uhs__r1_y*uhs_s_3 - uhs_v_1_t*uhs_w_1_t_3);
-        const real uhs_Q_t_2 = R(0.5)*uhs_Q_t;
-        const real uhs_d_G_t = m->uhs_d_G_t[i];
-        const real uhs_Q_t_3 = uhs_d_G_t + uhs_d_c_xx;
-        const real uhs_Q_t_4 = R(0.5)*uhs_Q_t_3;
-        const real uhs_Q_t_5 = axis_x_uhs_axes3_x*uhs_d_c_xy + uhs_axis_z_x*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_x*uhs_Q_t_2;
-        const real uhs_Q_t_6 = axis_x_uhs_axes3_y*uhs_d_c_xy + uhs_axis_z_y*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_y*uhs_Q_t_2;
-        const real uhs_Q_t_7 = axis_x_uhs_axes3_z*uhs_d_c_xy + uhs_axis_z_z*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_z*uhs_Q_t_2;
-        const real uhs_Q_t_8 = uhs_Q_t_4*uhs_axis_z_x - axis_x_uhs_axes3_x*uhs_d_c_xz;
-        const real uhs_Q_t_9 = uhs_Q_t_4*uhs_axis_z_y - axis_x_uhs_axes3_y*uhs_d_c_xz;
-        const real uhs_Q_t_10 = uhs_Q_t_4*uhs_axis_z_z - axis_x_uhs_axes3_z*uhs_d_c_xz;
-        const real uhs_Q_t_11 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_5 - uhs_Q_t_8*uhs_axis_z_x;
-        const real uhs_Q_t_12 = 2*uhs_Q_t_11 + uhs_d_c_xx;
-        const real uhs_Q_t_13 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_6 +
-            axis_y_uhs_axes3_in_base_y*uhs_Q_t_5 - uhs_Q_t_8*uhs_axis_z_y -
-            uhs_Q_t_9*uhs_axis_z_x;
-        const real uhs_Q_t_14 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_7 +
-            axis_y_uhs_axes3_in_base_z*uhs_Q_t_5 - uhs_Q_t_10*uhs_axis_z_x -
-            uhs_Q_t_8*uhs_axis_z_z;
-        const real uhs_Q_t_15 = axis_y_uhs_axes3_in_base_y*uhs_Q_t_6 - uhs_Q_t_9*uhs_axis_z_y;
-        const real uhs_Q_t_16 = 2*uhs_Q_t_15 + uhs_d_c_xx;
-        const real uhs_Q_t_17 = axis_y_uhs_axes3_in_base_y*uhs_Q_t_7 +
-            axis_y_uhs_axes3_in_base_z*uhs_Q_t_6 - uhs_Q_t_10*uhs_axis_z_y -
-            uhs_Q_t_9*uhs_axis_z_z;
-        const real uhs_Q_t_18 = axis_y_uhs_axes3_in_base_z*uhs_Q_t_7 - uhs_Q_t_10*uhs_axis_z_z;
-        const real uhs_Q_t_19 = 2*uhs_Q_t_18 + uhs_d_c_xx;
+        const real axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t;
+        const real axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2;
+        const real axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3;
+        const real uhs_Q_t = uhs_e_2_in_axes3_x*uhs_s_2;
+        const real uhs_Q_t_2 = uhs_c_1*uhs_e_2_in_axes3_y - uhs_Q_t*uhs_s_1;
+        const real uhs_Q_t_3 = uhs_Q_t*uhs_c_1 + uhs_e_2_in_axes3_y*uhs_s_1;
+        const real axis_y_uhs_axes3_x = uhs_Q_t_2*uhs_base_frame_xx + uhs_Q_t_3*uhs_base_frame_xy
+            + uhs_base_frame_xz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_y = uhs_Q_t_2*uhs_base_frame_yx + uhs_Q_t_3*uhs_base_frame_yy
+            + uhs_base_frame_yz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_z = uhs_Q_t_2*uhs_base_frame_zx + uhs_Q_t_3*uhs_base_frame_zy
+            + uhs_base_frame_zz*uhs_e_1_in_axes3_y;
+        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*axis_z_uhs_axes3_z -
+            axis_y_uhs_axes3_z*axis_z_uhs_axes3_y;
+        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*axis_z_uhs_axes3_x -
+            axis_y_uhs_axes3_x*axis_z_uhs_axes3_z;
+        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*axis_z_uhs_axes3_y -
+            axis_y_uhs_axes3_y*axis_z_uhs_axes3_x;
+        const real uhs_Q_t_4 = uhs_d_c_in_axes3_xx + uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
+            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y +
+            uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y);
+        const real uhs_Q_t_5 = R(0.5)*uhs_Q_t_4;
+        const real uhs_d_G_in_axes3_zz = m->uhs_d_G_in_axes3_zz[i];
+        const real uhs_Q_t_6 = uhs_d_G_in_axes3_zz + uhs_d_c_in_axes3_xx;
+        const real uhs_Q_t_7 = R(0.5)*uhs_Q_t_6;
+        const real uhs_Q_t_8 = axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xy +
+            axis_z_uhs_axes3_x*uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_x*uhs_Q_t_5;
+        const real uhs_Q_t_9 = axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xy +
+            axis_z_uhs_axes3_y*uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_y*uhs_Q_t_5;
+        const real uhs_Q_t_10 = axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xy +
+            axis_z_uhs_axes3_z*uhs_d_c_in_axes3_yz - axis_y_uhs_axes3_z*uhs_Q_t_5;
+        const real uhs_Q_t_11 = axis_z_uhs_axes3_x*uhs_Q_t_7 -
+            axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xz;
+        const real uhs_Q_t_12 = axis_z_uhs_axes3_y*uhs_Q_t_7 -
+            axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xz;
+        const real uhs_Q_t_13 = axis_z_uhs_axes3_z*uhs_Q_t_7 -
+            axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz;
+        const real uhs_Q_t_14 = axis_y_uhs_axes3_x*uhs_Q_t_8 - axis_z_uhs_axes3_x*uhs_Q_t_11;
+        const real uhs_Q_xx = -2*uhs_Q_t_14 - uhs_d_c_in_axes3_xx;
+        const real uhs_Q_xy = axis_z_uhs_axes3_x*uhs_Q_t_12 + axis_z_uhs_axes3_y*uhs_Q_t_11 -
+            axis_y_uhs_axes3_x*uhs_Q_t_9 - axis_y_uhs_axes3_y*uhs_Q_t_8;
+        const real uhs_Q_xz = axis_z_uhs_axes3_x*uhs_Q_t_13 + axis_z_uhs_axes3_z*uhs_Q_t_11 -
+            axis_y_uhs_axes3_x*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_8;
+        const real uhs_Q_t_15 = axis_y_uhs_axes3_y*uhs_Q_t_9 - axis_z_uhs_axes3_y*uhs_Q_t_12;
+        const real uhs_Q_yy = -2*uhs_Q_t_15 - uhs_d_c_in_axes3_xx;
+        const real uhs_Q_yz = axis_z_uhs_axes3_y*uhs_Q_t_13 + axis_z_uhs_axes3_z*uhs_Q_t_12 -
+            axis_y_uhs_axes3_y*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_9;
+        const real uhs_Q_t_16 = axis_y_uhs_axes3_z*uhs_Q_t_10 - axis_z_uhs_axes3_z*uhs_Q_t_13;
+        const real uhs_Q_zz = -2*uhs_Q_t_16 - uhs_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real uhs_M_ta_t = uhs_Q_t_13*uhs_q_in_base_z;
-        const real uhs_M_ta_t_2 = uhs_Q_t_14*uhs_q_in_base_y;
-        const real uhs_M_ta_t_3 = uhs_M_ta_t - uhs_M_ta_t_2;
-        const real uhs_M_ta_t_4 = uhs_Q_t_12*uhs_q_in_base_z - uhs_Q_t_14*uhs_q_in_base_x;
-        const real uhs_M_ta_t_5 = uhs_Q_t_12*uhs_q_in_base_y - uhs_Q_t_13*uhs_q_in_base_x;
-        const real uhs_M_ta_t_6 = uhs_Q_t_16*uhs_q_in_base_z - uhs_Q_t_17*uhs_q_in_base_y;
-        const real uhs_M_ta_t_7 = uhs_Q_t_17*uhs_q_in_base_x;
-        const real uhs_M_ta_t_8 = uhs_M_ta_t - uhs_M_ta_t_7;
-        const real uhs_M_ta_t_9 = uhs_Q_t_13*uhs_q_in_base_y - uhs_Q_t_16*uhs_q_in_base_x;
-        const real uhs_M_ta_t_10 = uhs_Q_t_17*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_y;
-        const real uhs_M_ta_t_11 = uhs_Q_t_14*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_x;
+        const real uhs_M_ta_t = -uhs_Q_xy*uhs_q_z;
+        const real uhs_M_ta_t_2 = uhs_Q_xz*uhs_q_y;
+        const real uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2;
+        const real uhs_M_ta_t_4 = uhs_Q_xx*uhs_q_z - uhs_Q_xz*uhs_q_x;
+        const real uhs_M_ta_t_5 = uhs_Q_xy*uhs_q_x - uhs_Q_xx*uhs_q_y;
+        const real uhs_M_ta_t_6 = uhs_Q_yz*uhs_q_y - uhs_Q_yy*uhs_q_z;
+        const real uhs_M_ta_t_7 = uhs_Q_yz*uhs_q_x;
+        const real uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7;
+        const real uhs_M_ta_t_9 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y;
+        const real uhs_M_ta_t_10 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z;
+        const real uhs_M_ta_t_11 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x;
         const real uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real uhs_M_aa_t = uhs_M_ta_t_6*uhs_q_in_base_z - uhs_M_ta_t_10*uhs_q_in_base_y;
-        const real uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_y;
-        const real uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_in_base_y + uhs_M_ta_t_9*uhs_q_in_base_z;
-        const real uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_x;
-        const real uhs_M_aa_t_5 = uhs_M_ta_t_12*uhs_q_in_base_x + uhs_M_ta_t_5*uhs_q_in_base_z;
-        const real uhs_M_aa_t_6 = uhs_M_ta_t_5*uhs_q_in_base_y - uhs_M_ta_t_9*uhs_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + uhs_Q_t_12 : uhs_Q_t_12;  /* total_uhs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + uhs_Q_t_13 : uhs_Q_t_13;  /* total_uhs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + uhs_Q_t_14 : uhs_Q_t_14;  /* total_uhs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + uhs_Q_t_16 : uhs_Q_t_16;  /* total_uhs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + uhs_Q_t_17 : uhs_Q_t_17;  /* total_uhs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + uhs_Q_t_19 : uhs_Q_t_19;  /* total_uhs_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + uhs_M_ta_t_3 : uhs_M_ta_t_3;  /* total_uhs_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + uhs_M_ta_t_4 : uhs_M_ta_t_4;  /* total_uhs_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + uhs_M_ta_t_5 : uhs_M_ta_t_5;  /* total_uhs_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + uhs_M_ta_t_6 : uhs_M_ta_t_6;  /* total_uhs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + uhs_M_ta_t_8 : uhs_M_ta_t_8;  /* total_uhs_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + uhs_M_ta_t_9 : uhs_M_ta_t_9;  /* total_uhs_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + uhs_M_ta_t_10 : uhs_M_ta_t_10;  /* total_uhs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + uhs_M_ta_t_11 : uhs_M_ta_t_11;  /* total_uhs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + uhs_M_ta_t_12 : uhs_M_ta_t_12;  /* total_uhs_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + uhs_M_aa_t : uhs_M_aa_t;  /* total_uhs_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + uhs_M_aa_t_2 : uhs_M_aa_t_2;  /* total_uhs_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + uhs_M_aa_t_3 : uhs_M_aa_t_3;  /* total_uhs_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + uhs_M_aa_t_4 : uhs_M_aa_t_4;  /* total_uhs_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + uhs_M_aa_t_5 : uhs_M_aa_t_5;  /* total_uhs_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + uhs_M_aa_t_6 : uhs_M_aa_t_6;  /* total_uhs_zz_3 */
+        const real uhs_M_aa_t = uhs_M_ta_t_10*uhs_q_y - uhs_M_ta_t_6*uhs_q_z;
+        const real uhs_M_aa_t_2 = uhs_M_ta_t_11*uhs_q_y + uhs_M_ta_t_8*uhs_q_z;
+        const real uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_y - uhs_M_ta_t_9*uhs_q_z;
+        const real uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_z - uhs_M_ta_t_11*uhs_q_x;
+        const real uhs_M_aa_t_5 = uhs_M_ta_t_5*uhs_q_z - uhs_M_ta_t_12*uhs_q_x;
+        const real uhs_M_aa_t_6 = uhs_M_ta_t_9*uhs_q_x - uhs_M_ta_t_5*uhs_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + uhs_Q_xx : uhs_Q_xx;  /* M_tt_uhs_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + uhs_Q_xy : uhs_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + uhs_Q_xz : uhs_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + uhs_Q_yy : uhs_Q_yy;  /* M_tt_uhs_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + uhs_Q_yz : uhs_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + uhs_Q_zz : uhs_Q_zz;  /* M_tt_uhs_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + uhs_M_ta_t_3 : uhs_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + uhs_M_ta_t_4 : uhs_M_ta_t_4;  /* M_ta_uhs_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + uhs_M_ta_t_5 : uhs_M_ta_t_5;  /* M_ta_uhs_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + uhs_M_ta_t_6 : uhs_M_ta_t_6;  /* M_ta_uhs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + uhs_M_ta_t_8 : uhs_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + uhs_M_ta_t_9 : uhs_M_ta_t_9;  /* M_ta_uhs_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + uhs_M_ta_t_10 : uhs_M_ta_t_10;  /* M_ta_uhs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + uhs_M_ta_t_11 : uhs_M_ta_t_11;  /* M_ta_uhs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + uhs_M_ta_t_12 : uhs_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + uhs_M_aa_t : uhs_M_aa_t;  /* M_aa_uhs_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + uhs_M_aa_t_2 : uhs_M_aa_t_2;  /* M_aa_uhs_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + uhs_M_aa_t_3 : uhs_M_aa_t_3;  /* M_aa_uhs_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + uhs_M_aa_t_4 : uhs_M_aa_t_4;  /* M_aa_uhs_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + uhs_M_aa_t_5 : uhs_M_aa_t_5;  /* M_aa_uhs_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + uhs_M_aa_t_6 : uhs_M_aa_t_6;  /* M_aa_uhs_zz */
         const real uhs_size_t = m->uhs_size_t[i];
         const real uhs_size = m->uhs_size[i];
-        o[0*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) + UNLESS(magnitude(uhs_v_1_r0_y) >
-            TOLERANCE*uhs_size);
+        o[0*count + k] = UNLESS(magnitude(uhs_h_3_t_6) > TOLERANCE*TOLERANCE*uhs_size_t) +
+            UNLESS(magnitude(uhs_h_3_t_8) > TOLERANCE*TOLERANCE*uhs_size_t) +
+            UNLESS(magnitude(uhs_h_3_t_9) > TOLERANCE*uhs_size) +
+            UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*uhs_size);
     }
 }
 
@@ -2567,81 +2654,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_uhs_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_uhs_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_uhs_xx;
-        const real total_uhs_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_uhs_yy;
-        const real total_uhs_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_uhs_zz;
+        const real M_tt_xx = M_tt_uhs_xx + m_star;
+        const real M_tt_uhs_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_uhs_yy + m_star;
+        const real M_tt_uhs_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_uhs_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_uhs_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_uhs_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_uhs_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_uhs_xz_2 - h_star_in_base_y;
-        const real total_uhs_yx = sums[9*w + k];
-        const real M_ta_yx = total_uhs_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_uhs_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_uhs_yz_2;
-        const real total_uhs_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_uhs_zx;
-        const real total_uhs_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_uhs_zy;
+        const real M_ta_uhs_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_uhs_xy + h_star_z;
+        const real M_ta_uhs_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_uhs_xz - h_star_y;
+        const real M_ta_uhs_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_uhs_yx - h_star_z;
+        const real M_ta_uhs_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_uhs_yz + h_star_x;
+        const real M_ta_uhs_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_uhs_zx + h_star_y;
+        const real M_ta_uhs_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_uhs_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_uhs_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_uhs_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_uhs_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_uhs_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_uhs_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_uhs_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_uhs_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_uhs_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_uhs_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_uhs_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_uhs_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_uhs_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_uhs_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_uhs_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_uhs_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_uhs_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_uhs_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_uhs_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_uhs_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_uhs_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_uhs_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_uhs_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_uhs_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_uhs_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_uhs_xy = sums[1*w + k];
-        M[1*w + k] = -total_uhs_xy;
-        M[6*w + k] = -total_uhs_xy;
-        const real total_uhs_xz = sums[2*w + k];
-        M[2*w + k] = -total_uhs_xz;
-        M[12*w + k] = -total_uhs_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_uhs_yz = sums[4*w + k];
-        M[8*w + k] = -total_uhs_yz;
-        M[13*w + k] = -total_uhs_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_uhs_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_uhs_xx_2;
-        M[18*w + k] = total_uhs_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_uhs_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_uhs_yy_2;
-        M[25*w + k] = -total_uhs_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_uhs_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_uhs_zz_2;
-        M[32*w + k] = -total_uhs_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2651,10 +2741,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_uhs_xy) + (total_uhs_xz + (M_tt_yy + total_uhs_yz))) +
-            ((M_tt_zz + total_uhs_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_uhs_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_uhs_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2737,16 +2827,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2757,30 +2850,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2802,9 +2904,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2822,27 +2924,27 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_S_x = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_S_y = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
+        const real uhs_S_z = t_z + uhs_q_z - uhs_base_point_z;
         /* (uhs-px_1) component along the reference direction */
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
@@ -2860,283 +2962,300 @@ INLINE void Z_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (uhs-root_1) root, with the sign of the branch */
         const real uhs_branch_1 = m->uhs_branch_1[i];
         const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
+        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
+        const real uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
+        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
         /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
+        const real uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
+        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z;
         /* (uhs-x_3) from the origin of joint 3 to the connection point */
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
+        const real uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x;
         /* (uhs-q_3) displacement of joint 3 */
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t;
+        const real uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_x_3_in_axes2_x);
         /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
+        const real uhs_c_3 = sine(uhs_q_3_t);
         /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_t = uhs_c_2*uhs_s_3;
-        const real uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t;
-        const real uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_root_2 = 1/uhs_root_2;
-        const real uhs_axis_z_x = inv_uhs_root_2*uhs_S_x;
-        const real uhs_axis_z_y = inv_uhs_root_2*uhs_S_y;
-        const real uhs_axis_z_z = inv_uhs_root_2*uhs_S_z;
-        const real uhs_w_1_t = uhs_s_2*uhs_s_3;
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-        const real uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
-        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_in_base_x = axis_y_uhs_axes3_r4_x*uhs_base_frame_xx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*uhs_v_1_t;
-        const real axis_y_uhs_axes3_in_base_y = axis_y_uhs_axes3_r4_x*uhs_base_frame_yx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*uhs_v_1_t;
-        const real axis_y_uhs_axes3_in_base_z = axis_y_uhs_axes3_r4_x*uhs_base_frame_zx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*uhs_v_1_t;
-        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*uhs_axis_z_z -
-            axis_y_uhs_axes3_in_base_z*uhs_axis_z_y;
-        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*uhs_axis_z_x -
-            axis_y_uhs_axes3_in_base_x*uhs_axis_z_z;
-        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*uhs_axis_z_y -
-            axis_y_uhs_axes3_in_base_y*uhs_axis_z_x;
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3;
-        const real uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_v_1_r0_y = 1/uhs_v_1_r0_y;
+        const real uhs_s_3 = cosine(uhs_q_3_t);
         /* (uhs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y;
+        const real uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y;
         const real omega_x = s[15*w + j];
-        const real uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z;
-        const real uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x;
+        const real uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z;
+        const real uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x;
         const real t_dot_x = s[12*w + j];
         const real uhs_S_dot_x = t_dot_x + uhs_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3;
-        const real uhs_S_dot_r0_x = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx
-            + uhs_S_dot_z*uhs_base_frame_zx;
-        const real uhs_S_dot_r0_y = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy
-            + uhs_S_dot_z*uhs_base_frame_zy;
-        const real uhs_S_dot_r0_z = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz
-            + uhs_S_dot_z*uhs_base_frame_zz;
-        const real uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1;
+        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
+        const real uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3;
+        const real uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2;
+        const real uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2;
+        const real uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y;
+        const real uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x;
+        /* (uhs-qd_1) rate of joint 1 */
+        const real inv_uhs_v_1_in_axes2_z = 1/uhs_v_1_in_axes2_z;
+        const real uhs_qd_1_t = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx;
+        const real uhs_qd_1_t_2 = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy;
+        const real uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1);
+        /* (uhs-qd_2) rate of joint 2 */
+        const real inv_uhs_root_2 = 1/uhs_root_2;
+        const real uhs_qd_2_t = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz;
+        const real uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2;
+        const real uhs_qd_2 = inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 -
+            uhs_qd_1*uhs_v_1_in_axes2_y);
         /* (uhs-qd_3) rate of joint 3 */
-        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 -
-            uhs_S_dot_r1_y*uhs_c_2);
-        const real uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1);
-        const real uhs_qd_2 = inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 -
-            uhs_qd_1*uhs_v_1_r0_x);
+        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2);
         /* (uhs-omega_1) angular velocity of link 1 */
-        const real uhs_omega_1_t = uhs_qd_1*uhs_s_2;
-        const real uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1;
+        const real uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2;
+        const real uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1;
         /* (uhs-omega_2) angular velocity of link 2 */
-        const real uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2;
-        const real uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3;
+        const real uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3;
+        const real uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3;
+        /* (uhs-W_2) centripetal tensor of link 2 */
+        const real uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2;
+        const real uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2;
+        const real uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y;
+        const real uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x;
+        const real uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y;
+        const real uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
+        const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
         /* (uhs-omega_3) angular velocity of link 3 */
-        const real uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3;
-        /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3;
-        const real uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3;
+        const real uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3;
+        /* (uhs-W_3) centripetal tensor of link 3 */
+        const real uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
+        const real uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
         /* (uhs-u_1) centripetal acceleration of the connection point */
+        const real axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x;
+        const real axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y;
+        const real axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z;
+        const real uhs_u_1_t = uhs_s_2*uhs_s_3;
+        const real uhs_u_1_t_2 = uhs_c_1*uhs_c_3 - uhs_s_1*uhs_u_1_t;
+        const real uhs_u_1_t_3 = uhs_c_1*uhs_u_1_t + uhs_c_3*uhs_s_1;
+        const real axis_y_uhs_axes3_x = uhs_base_frame_xx*uhs_u_1_t_2 +
+            uhs_base_frame_xy*uhs_u_1_t_3 + uhs_base_frame_xz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_y = uhs_base_frame_yx*uhs_u_1_t_2 +
+            uhs_base_frame_yy*uhs_u_1_t_3 + uhs_base_frame_yz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_z = uhs_base_frame_zx*uhs_u_1_t_2 +
+            uhs_base_frame_zy*uhs_u_1_t_3 + uhs_base_frame_zz*uhs_e_1_in_axes3_y;
+        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*axis_z_uhs_axes3_z -
+            axis_y_uhs_axes3_z*axis_z_uhs_axes3_y;
+        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*axis_z_uhs_axes3_x -
+            axis_y_uhs_axes3_x*axis_z_uhs_axes3_z;
+        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*axis_z_uhs_axes3_y -
+            axis_y_uhs_axes3_y*axis_z_uhs_axes3_x;
         const real uhs_u_1_x = omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2;
         const real uhs_u_1_y = omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3;
         const real uhs_u_1_z = omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t;
+        const real uhs_u_1_in_axes3_x = axis_x_uhs_axes3_x*uhs_u_1_x +
+            axis_x_uhs_axes3_y*uhs_u_1_y + axis_x_uhs_axes3_z*uhs_u_1_z;
+        const real uhs_u_1_in_axes3_y = axis_y_uhs_axes3_x*uhs_u_1_x +
+            axis_y_uhs_axes3_y*uhs_u_1_y + axis_y_uhs_axes3_z*uhs_u_1_z;
+        const real uhs_u_1_in_axes3_z = axis_z_uhs_axes3_x*uhs_u_1_x +
+            axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z;
         /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2;
-        const real uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2;
-        const real uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y;
-        const real uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y;
+        const real uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3;
+        const real uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3;
+        /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3;
+        const real uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3;
         /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t;
-        const real uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y;
-        /* (uhs-W_2) centripetal tensor of link 2 */
-        const real uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t;
-        const real uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2;
-        const real uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2;
-        const real uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2;
-        /* (uhs-W_3) centripetal tensor of link 3 */
-        const real uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x;
-        const real uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y;
-        const real uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z;
-        const real uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y;
-        const real uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z;
-        const real uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z;
-        const real uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2;
+        const real uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t;
+        const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y;
         /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
         const real uhs_bias_t = m->uhs_bias_t[i];
         const real uhs_bias_t_2 = uhs_bias_t*uhs_qd_3;
-        const real uhs_bias_x = uhs_bias_t_2*uhs_omega_2_r1_y +
-            uhs_joint3_offset_x*(uhs_zeta_2_t_2 + uhs_omega_1_t*uhs_omega_2_r1_x) +
-            uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y);
-        const real uhs_bias_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
-            uhs_omega_1_t*uhs_omega_2_r1_y) + uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) -
-            uhs_bias_t_2*uhs_omega_2_r1_x;
-        const real uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x;
-        /* (uhs-u_1) centripetal acceleration of the connection point */
-        const real uhs_u_1_tip_x = axis_x_uhs_axes3_x*uhs_u_1_x + axis_x_uhs_axes3_y*uhs_u_1_y +
-            axis_x_uhs_axes3_z*uhs_u_1_z;
-        const real uhs_u_1_tip_y = axis_y_uhs_axes3_in_base_x*uhs_u_1_x +
-            axis_y_uhs_axes3_in_base_y*uhs_u_1_y + axis_y_uhs_axes3_in_base_z*uhs_u_1_z;
-        const real uhs_u_1_tip_z = uhs_axis_z_x*uhs_u_1_x + uhs_axis_z_y*uhs_u_1_y +
-            uhs_axis_z_z*uhs_u_1_z;
+        const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
+            uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y);
+        const real uhs_bias_in_axes3_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
+            uhs_bias_t_2*uhs_omega_2_in_axes3_x;
+        const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x -
+            uhs_W_2_t_3*uhs_x_3_in_axes2_x;
         /* (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real uhs_rel_o_x = uhs_u_1_tip_x - uhs_bias_x;
-        const real uhs_rel_o_y = uhs_u_1_tip_y - uhs_bias_y;
-        const real uhs_rel_o_z = uhs_u_1_tip_z - uhs_bias_z;
-        /* (uhs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real uhs_qdd_1_o = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_o_y + uhs_rel_o_x*uhs_s_3);
-        const real uhs_qdd_2_o = inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_r0_x + uhs_rel_o_y*uhs_s_3 -
-            uhs_c_3_t*uhs_rel_o_x);
+        const real uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x;
+        const real uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y;
+        const real uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z;
+        /* (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real uhs_qdd_1_o = inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_o_in_axes3_y +
+            uhs_rel_o_in_axes3_x*uhs_s_3);
+        /* (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real uhs_qdd_2_o = -inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_in_axes2_y +
+            uhs_rel_o_in_axes3_y*uhs_s_3 - uhs_c_3*uhs_rel_o_in_axes3_x);
         /* (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real uhs_alpha_1_o_t = uhs_qdd_1_o*uhs_s_2;
-        const real uhs_alpha_1_o_t_2 = uhs_c_2*uhs_qdd_1_o;
+        const real uhs_alpha_1_o_in_axes2_x = uhs_qdd_1_o*uhs_s_2;
+        const real uhs_alpha_1_o_in_axes2_y = uhs_c_2*uhs_qdd_1_o;
         /* (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real uhs_alpha_2_o_x = uhs_alpha_1_o_t - uhs_zeta_2_x;
-        const real uhs_alpha_2_o_y = -uhs_alpha_1_o_t_2 - uhs_zeta_2_y;
+        const real uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x;
+        const real uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz;
+        /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real uhs_B_2_o_in_axes2_xy = uhs_W_2_in_axes2_xy - uhs_qdd_2_o;
+        const real uhs_B_2_o_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2_o;
+        const real uhs_B_2_o_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y;
+        const real uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x;
         /* (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real uhs_alpha_3_o_x = uhs_zeta_3_x + uhs_alpha_2_o_y*uhs_c_3_t -
-            uhs_qdd_2_o*uhs_s_3;
-        const real uhs_alpha_3_o_y = -uhs_zeta_3_y - uhs_alpha_2_o_y*uhs_s_3 -
-            uhs_c_3_t*uhs_qdd_2_o;
-        const real uhs_alpha_3_o_z = uhs_alpha_2_o_x + inv_uhs_joint3_pitch*uhs_rel_o_z;
+        const real uhs_alpha_3_o_in_axes3_x = uhs_zeta_3_in_axes3_x +
+            uhs_alpha_2_o_in_axes2_y*uhs_c_3 + uhs_qdd_2_o*uhs_s_3;
+        const real uhs_alpha_3_o_in_axes3_y = uhs_zeta_3_in_axes3_y + uhs_c_3*uhs_qdd_2_o -
+            uhs_alpha_2_o_in_axes2_y*uhs_s_3;
+        const real uhs_alpha_3_o_in_axes3_z = uhs_alpha_2_o_in_axes2_x +
+            inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z;
         /* (uhs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real uhs_B_3_o_xy = uhs_W_3_xy - uhs_alpha_3_o_z;
-        const real uhs_B_3_o_xz = uhs_W_3_xz + uhs_alpha_3_o_y;
-        const real uhs_B_3_o_yx = uhs_W_3_xy + uhs_alpha_3_o_z;
-        const real uhs_B_3_o_yz = uhs_W_3_yz - uhs_alpha_3_o_x;
-        const real uhs_B_3_o_zx = uhs_W_3_xz - uhs_alpha_3_o_y;
-        const real uhs_B_3_o_zy = uhs_W_3_yz + uhs_alpha_3_o_x;
+        const real uhs_B_3_o_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z;
+        const real uhs_B_3_o_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y;
+        const real uhs_B_3_o_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z;
+        const real uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x;
+        const real uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y;
+        const real uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x;
         /* (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real uhs_acc_3_o_x = uhs_u_1_tip_x - axis_x_uhs_axes3_x*gravity_x -
+        const real uhs_acc_3_o_in_axes3_x = uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x -
             axis_x_uhs_axes3_y*gravity_y - axis_x_uhs_axes3_z*gravity_z;
-        const real uhs_acc_3_o_y = uhs_u_1_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
-            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z;
-        const real uhs_acc_3_o_z = uhs_u_1_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y
-            - gravity_z*uhs_axis_z_z;
+        const real uhs_acc_3_o_in_axes3_y = uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*gravity_x -
+            axis_y_uhs_axes3_y*gravity_y - axis_y_uhs_axes3_z*gravity_z;
+        const real uhs_acc_3_o_in_axes3_z = uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x -
+            axis_z_uhs_axes3_y*gravity_y - axis_z_uhs_axes3_z*gravity_z;
         /* (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real uhs_J_3_xy = m->uhs_J_3_xy[i];
-        const real uhs_J_3_xz = m->uhs_J_3_xz[i];
-        const real uhs_J_3_yz = m->uhs_J_3_yz[i];
-        const real uhs_Sigma_3_yy = m->uhs_Sigma_3_yy[i];
-        const real uhs_Sigma_3_zz = m->uhs_Sigma_3_zz[i];
-        const real uhs_h_3_x = m->uhs_h_3_x[i];
-        const real uhs_h_3_z = m->uhs_h_3_z[i];
-        const real uhs_mu_3_o_x = uhs_B_3_o_yx*uhs_J_3_xy + uhs_B_3_o_zy*uhs_Sigma_3_yy +
-            uhs_J_3_xz*(uhs_W_3_t_2 - uhs_W_3_t_3) + uhs_acc_3_o_z*uhs_h_3_z -
-            uhs_B_3_o_yz*uhs_Sigma_3_zz - uhs_B_3_o_zx*uhs_J_3_yz - uhs_acc_3_o_y*uhs_h_3_x;
-        const real uhs_Sigma_3_xx = m->uhs_Sigma_3_xx[i];
-        const real uhs_h_3_y = m->uhs_h_3_y[i];
-        const real uhs_mu_3_o_y = uhs_B_3_o_xz*uhs_Sigma_3_zz + uhs_B_3_o_zy*uhs_J_3_yz +
-            uhs_acc_3_o_x*uhs_h_3_x - uhs_B_3_o_xy*uhs_J_3_xz - uhs_B_3_o_zx*uhs_Sigma_3_xx -
-            uhs_J_3_xy*(uhs_W_3_t - uhs_W_3_t_3) - uhs_acc_3_o_z*uhs_h_3_y;
-        const real uhs_mu_3_o_z = uhs_B_3_o_xz*uhs_J_3_xz + uhs_B_3_o_yx*uhs_Sigma_3_xx +
-            uhs_J_3_yz*(uhs_W_3_t - uhs_W_3_t_2) + uhs_acc_3_o_y*uhs_h_3_y -
-            uhs_B_3_o_xy*uhs_Sigma_3_yy - uhs_B_3_o_yz*uhs_J_3_xy - uhs_acc_3_o_x*uhs_h_3_z;
-        /* (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real uhs_g_r0_x = m->uhs_g_r0_x[i];
-        const real uhs_g_r0_y = m->uhs_g_r0_y[i];
-        const real uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x;
-        const real uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1;
-        const real uhs_g_r0_z = m->uhs_g_r0_z[i];
-        const real uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y;
-        const real uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2;
-        /* (uhs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real uhs_B_2_o_xy = uhs_qdd_2_o - uhs_W_2_xy;
-        const real uhs_B_2_o_yx = -uhs_W_2_xy - uhs_qdd_2_o;
-        const real uhs_B_2_o_zx = uhs_zeta_2_y - uhs_alpha_2_o_y;
-        const real uhs_B_2_o_zy = uhs_alpha_2_o_x - uhs_zeta_2_x;
+        const real uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
+        const real uhs_J_3_in_spec3_xy = m->uhs_J_3_in_spec3_xy[i];
+        const real uhs_J_3_in_spec3_xz = m->uhs_J_3_in_spec3_xz[i];
+        const real uhs_J_3_in_spec3_yz = m->uhs_J_3_in_spec3_yz[i];
+        const real uhs_Sigma_3_in_axes3_yy = m->uhs_Sigma_3_in_axes3_yy[i];
+        const real uhs_Sigma_3_in_axes3_zz = m->uhs_Sigma_3_in_axes3_zz[i];
+        const real uhs_h_3_in_spec3_x = m->uhs_h_3_in_spec3_x[i];
+        const real uhs_h_3_in_spec3_z = m->uhs_h_3_in_spec3_z[i];
+        const real uhs_mu_3_o_in_axes3_x = uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy +
+            uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy + uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 -
+            uhs_mu_3_o_t) + uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_yz*uhs_Sigma_3_in_axes3_zz -
+            uhs_B_3_o_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_x;
+        const real uhs_Sigma_3_in_axes3_xx = m->uhs_Sigma_3_in_axes3_xx[i];
+        const real uhs_h_3_in_spec3_y = m->uhs_h_3_in_spec3_y[i];
+        const real uhs_mu_3_o_in_axes3_y = uhs_B_3_o_in_axes3_xz*uhs_Sigma_3_in_axes3_zz +
+            uhs_B_3_o_in_axes3_zy*uhs_J_3_in_spec3_yz + uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_x
+            - uhs_B_3_o_in_axes3_xy*uhs_J_3_in_spec3_xz -
+            uhs_B_3_o_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
+            uhs_mu_3_o_t) - uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_y;
+        const real uhs_mu_3_o_in_axes3_z = uhs_B_3_o_in_axes3_xz*uhs_J_3_in_spec3_xz +
+            uhs_B_3_o_in_axes3_yx*uhs_Sigma_3_in_axes3_xx + uhs_J_3_in_spec3_yz*(uhs_W_2_t -
+            uhs_W_2_t_2) + uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_y -
+            uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
+            uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z;
         /* (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real uhs_J_2_xy = m->uhs_J_2_xy[i];
-        const real uhs_J_2_xz = m->uhs_J_2_xz[i];
-        const real uhs_J_2_yz = m->uhs_J_2_yz[i];
-        const real uhs_Sigma_2_yy = m->uhs_Sigma_2_yy[i];
-        const real uhs_Sigma_2_zz = m->uhs_Sigma_2_zz[i];
-        const real uhs_h_2_y = m->uhs_h_2_y[i];
-        const real uhs_h_2_z = m->uhs_h_2_z[i];
-        const real uhs_mu_2_o_x = uhs_B_2_o_yx*uhs_J_2_xy + uhs_B_2_o_zx*uhs_J_2_xz +
-            uhs_B_2_o_zy*uhs_Sigma_2_yy + uhs_Sigma_2_zz*uhs_alpha_1_o_t + uhs_g_r1_x*uhs_h_2_z +
-            uhs_g_r3_y*uhs_h_2_y - uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3);
-        const real uhs_Sigma_2_xx = m->uhs_Sigma_2_xx[i];
-        const real uhs_h_2_x = m->uhs_h_2_x[i];
-        const real uhs_mu_2_o_y = uhs_B_2_o_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x -
-            uhs_B_2_o_zx*uhs_Sigma_2_xx - uhs_B_2_o_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t -
-            uhs_W_2_t_3) - uhs_Sigma_2_zz*uhs_alpha_1_o_t_2 - uhs_g_r3_x*uhs_h_2_y;
-        const real uhs_mu_2_o_z = uhs_B_2_o_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_o_t +
-            uhs_J_2_yz*uhs_alpha_1_o_t_2 - uhs_B_2_o_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t -
-            uhs_W_2_t_2) - uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x;
+        const real uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
+        const real uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
+        const real uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2;
+        const real uhs_mu_2_t = m->uhs_mu_2_t[i];
+        const real uhs_mu_2_t_2 = m->uhs_mu_2_t_2[i];
+        const real uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1;
+        const real uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1;
+        const real uhs_mu_2_t_3 = m->uhs_mu_2_t_3[i];
+        const real uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_mu_2_t_3*uhs_s_2;
+        const real uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_o_t_4*uhs_s_2;
+        const real uhs_J_2_in_spec2_xy = m->uhs_J_2_in_spec2_xy[i];
+        const real uhs_J_2_in_spec2_xz = m->uhs_J_2_in_spec2_xz[i];
+        const real uhs_J_2_in_spec2_yz = m->uhs_J_2_in_spec2_yz[i];
+        const real uhs_Sigma_2_in_axes2_yy = m->uhs_Sigma_2_in_axes2_yy[i];
+        const real uhs_Sigma_2_in_axes2_zz = m->uhs_Sigma_2_in_axes2_zz[i];
+        const real uhs_h_2_in_spec2_y = m->uhs_h_2_in_spec2_y[i];
+        const real uhs_h_2_in_spec2_z = m->uhs_h_2_in_spec2_z[i];
+        const real uhs_mu_2_o_in_axes2_x = uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy +
+            uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
+            uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y
+            + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_o_t_2 -
+            uhs_mu_2_o_t_3);
+        const real uhs_Sigma_2_in_axes2_xx = m->uhs_Sigma_2_in_axes2_xx[i];
+        const real uhs_h_2_in_spec2_x = m->uhs_h_2_in_spec2_x[i];
+        const real uhs_mu_2_o_in_axes2_y = uhs_B_2_o_in_axes2_xy*uhs_J_2_in_spec2_yz +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+            - uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_o_t -
+            uhs_mu_2_o_t_3) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y;
+        const real uhs_mu_2_o_in_axes2_z = uhs_B_2_o_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x -
+            uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_o_t -
+            uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x;
         /* (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real uhs_N_2_o_x = uhs_mu_2_o_x + uhs_mu_3_o_z;
-        const real uhs_N_2_o_y = uhs_mu_2_o_y + uhs_c_3_t*uhs_mu_3_o_x - uhs_mu_3_o_y*uhs_s_3;
-        const real uhs_N_2_o_z = uhs_mu_2_o_z + uhs_c_3_t*uhs_mu_3_o_y + uhs_mu_3_o_x*uhs_s_3;
-        /* (uhs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real uhs_G_o_t = inv_uhs_root_2*uhs_N_2_o_z;
-        const real uhs_G_o_t_2 = inv_uhs_v_1_r0_y*(uhs_G_o_t*uhs_v_1_r0_x + uhs_N_2_o_y*uhs_c_2 -
-            uhs_N_2_o_x*uhs_s_2);
+        const real uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z;
+        const real uhs_N_2_o_in_axes2_y = uhs_mu_2_o_in_axes2_y + uhs_c_3*uhs_mu_3_o_in_axes3_x -
+            uhs_mu_3_o_in_axes3_y*uhs_s_3;
+        const real uhs_N_2_o_in_axes2_z = uhs_mu_2_o_in_axes2_z + uhs_c_3*uhs_mu_3_o_in_axes3_y +
+            uhs_mu_3_o_in_axes3_x*uhs_s_3;
         /* (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real uhs_c_o_x = uhs_G_o_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) -
-            uhs_B_3_o_xy*uhs_h_3_z - uhs_B_3_o_xz*uhs_h_3_x - uhs_G_o_t*uhs_c_3_t;
-        const real uhs_c_o_y = uhs_G_o_t*uhs_s_3 + uhs_G_o_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t +
-            uhs_W_3_t_3) - uhs_B_3_o_yx*uhs_h_3_y - uhs_B_3_o_yz*uhs_h_3_x;
-        const real uhs_c_o_z = uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_z -
-            uhs_B_3_o_zx*uhs_h_3_y - uhs_B_3_o_zy*uhs_h_3_z;
+        const real uhs_c_o_t = inv_uhs_root_2*uhs_N_2_o_in_axes2_z;
+        const real uhs_c_o_t_2 = inv_uhs_v_1_in_axes2_z*(uhs_c_o_t*uhs_v_1_in_axes2_y -
+            uhs_N_2_o_in_axes2_x*uhs_s_2 - uhs_N_2_o_in_axes2_y*uhs_c_2);
+        const real uhs_c_o_in_axes3_x = uhs_c_o_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 +
+            uhs_mu_3_o_t) - uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_3*uhs_c_o_t;
+        const real uhs_c_o_in_axes3_y = uhs_c_3*uhs_c_o_t_2 + uhs_c_o_t*uhs_s_3 +
+            uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_o_t) -
+            uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x;
+        const real uhs_c_o_in_axes3_z = uhs_W_2_t_3*uhs_h_3_in_spec3_x -
+            inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z - uhs_B_3_o_in_axes3_zx*uhs_h_3_in_spec3_y
+            - uhs_B_3_o_in_axes3_zy*uhs_h_3_in_spec3_z;
         /* (uhs-U) velocity and gravity terms of the leg force */
-        const real uhs_U_in_base_x = -axis_x_uhs_axes3_x*uhs_c_o_x -
-            axis_y_uhs_axes3_in_base_x*uhs_c_o_y - uhs_axis_z_x*uhs_c_o_z;
-        const real uhs_U_in_base_y = -axis_x_uhs_axes3_y*uhs_c_o_x -
-            axis_y_uhs_axes3_in_base_y*uhs_c_o_y - uhs_axis_z_y*uhs_c_o_z;
-        const real uhs_U_in_base_z = -axis_x_uhs_axes3_z*uhs_c_o_x -
-            axis_y_uhs_axes3_in_base_z*uhs_c_o_y - uhs_axis_z_z*uhs_c_o_z;
+        const real uhs_U_x = -axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x -
+            axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y - axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z;
+        const real uhs_U_y = -axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x -
+            axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y - axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z;
+        const real uhs_U_z = -axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x -
+            axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y - axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real uhs_Z_a_t = uhs_U_in_base_z*uhs_q_in_base_y - uhs_U_in_base_y*uhs_q_in_base_z;
-        const real uhs_Z_a_t_2 = uhs_U_in_base_x*uhs_q_in_base_z -
-            uhs_U_in_base_z*uhs_q_in_base_x;
-        const real uhs_Z_a_t_3 = uhs_U_in_base_y*uhs_q_in_base_x -
-            uhs_U_in_base_x*uhs_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + uhs_U_in_base_x : uhs_U_in_base_x;  /* total_uhs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + uhs_U_in_base_y : uhs_U_in_base_y;  /* total_uhs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + uhs_U_in_base_z : uhs_U_in_base_z;  /* total_uhs_z */
-        terms[3*count + k] = add ? terms[3*count + k] + uhs_Z_a_t : uhs_Z_a_t;  /* total_uhs_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + uhs_Z_a_t_2 : uhs_Z_a_t_2;  /* total_uhs_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + uhs_Z_a_t_3 : uhs_Z_a_t_3;  /* total_uhs_z_2 */
+        const real uhs_Z_a_t = uhs_U_z*uhs_q_y - uhs_U_y*uhs_q_z;
+        const real uhs_Z_a_t_2 = uhs_U_x*uhs_q_z - uhs_U_z*uhs_q_x;
+        const real uhs_Z_a_t_3 = uhs_U_y*uhs_q_x - uhs_U_x*uhs_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + uhs_U_x : uhs_U_x;  /* Z_t_uhs_x */
+        terms[1*count + k] = add ? terms[1*count + k] + uhs_U_y : uhs_U_y;  /* Z_t_uhs_y */
+        terms[2*count + k] = add ? terms[2*count + k] + uhs_U_z : uhs_U_z;  /* Z_t_uhs_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + uhs_Z_a_t : uhs_Z_a_t;  /* Z_a_uhs_x */
+        terms[4*count + k] = add ? terms[4*count + k] + uhs_Z_a_t_2 : uhs_Z_a_t_2;  /* Z_a_uhs_y */
+        terms[5*count + k] = add ? terms[5*count + k] + uhs_Z_a_t_3 : uhs_Z_a_t_3;  /* Z_a_uhs_z */
         const real uhs_size_t = m->uhs_size_t[i];
         const real uhs_size = m->uhs_size[i];
         o[0*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
             UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) + UNLESS(magnitude(uhs_v_1_r0_y) >
-            TOLERANCE*uhs_size);
+            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) +
+            UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*uhs_size);
     }
 }
 
@@ -3152,27 +3271,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_uhs_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_uhs_x;
+        const real Z_t_uhs_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_uhs_x;
         const real Z_p_y = s[19*w + k];
-        const real total_uhs_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_uhs_y;
+        const real Z_t_uhs_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_uhs_y;
         const real Z_p_z = s[20*w + k];
-        const real total_uhs_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_uhs_z;
+        const real Z_t_uhs_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_uhs_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_uhs_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_uhs_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_uhs_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_uhs_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_uhs_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_uhs_z_2;
+        const real Z_a_uhs_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_uhs_x + Z_q_x;
+        const real Z_a_uhs_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_uhs_y + Z_q_y;
+        const real Z_a_uhs_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_uhs_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -3273,27 +3394,27 @@ INLINE void H_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_S_x = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_S_y = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
+        const real uhs_S_z = t_z + uhs_q_z - uhs_base_point_z;
         /* (uhs-px_1) component along the reference direction */
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
@@ -3312,31 +3433,32 @@ INLINE void H_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_root_2 = 1/uhs_root_2;
         /* (uhs-w_3) reciprocal vector 3 */
+        const real inv_uhs_root_2 = 1/uhs_root_2;
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
-        const real uhs_w_3_t = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x;
-        const real uhs_w_3_t_2 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y;
-        const real uhs_w_3_t_3 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z;
+        const real uhs_w_3_x = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x;
+        const real uhs_w_3_y = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y;
+        const real uhs_w_3_z = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z;
         /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-        const real uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2;
-        const real uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3;
-        const real uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t;
-        o[0*count + k] = uhs_w_3_t;
-        o[1*count + k] = uhs_w_3_t_2;
-        o[2*count + k] = uhs_w_3_t_3;
+        const real uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y;
+        const real uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z;
+        const real uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x;
+        /* (uhs-w_3) reciprocal vector 3 */
+        o[0*count + k] = uhs_w_3_x;
+        o[1*count + k] = uhs_w_3_y;
+        o[2*count + k] = uhs_w_3_z;
+        /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = uhs_H_a_3_x;
         o[4*count + k] = uhs_H_a_3_y;
         o[5*count + k] = uhs_H_a_3_z;
-        o[7*count + k] = (uhs_w_3_t + (uhs_w_3_t_2 + uhs_w_3_t_3)) + (uhs_H_a_3_x + (uhs_H_a_3_y +
+        o[7*count + k] = (uhs_w_3_x + (uhs_w_3_y + uhs_w_3_z)) + (uhs_H_a_3_x + (uhs_H_a_3_y +
             uhs_H_a_3_z));
         const real uhs_size_t = m->uhs_size_t[i];
         const real uhs_size = m->uhs_size[i];
@@ -3446,33 +3568,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3480,31 +3589,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3532,9 +3667,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3552,27 +3687,27 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_S_x = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_S_y = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
+        const real uhs_S_z = t_z + uhs_q_z - uhs_base_point_z;
         /* (uhs-px_1) component along the reference direction */
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
@@ -3590,290 +3725,311 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
         /* (uhs-root_1) root, with the sign of the branch */
         const real uhs_branch_1 = m->uhs_branch_1[i];
         const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
+        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
+        const real uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
+        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
         /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
+        const real uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
+        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z;
         /* (uhs-x_3) from the origin of joint 3 to the connection point */
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
+        const real uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x;
         /* (uhs-q_3) displacement of joint 3 */
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t;
+        const real uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_x_3_in_axes2_x);
         /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
+        const real uhs_c_3 = sine(uhs_q_3_t);
         /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_t = uhs_c_2*uhs_s_3;
-        const real uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t;
-        const real uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_root_2 = 1/uhs_root_2;
-        const real uhs_axis_z_x = inv_uhs_root_2*uhs_S_x;
-        const real uhs_axis_z_y = inv_uhs_root_2*uhs_S_y;
-        const real uhs_axis_z_z = inv_uhs_root_2*uhs_S_z;
-        const real uhs_w_1_t = uhs_s_2*uhs_s_3;
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-        const real uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
-        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_in_base_x = axis_y_uhs_axes3_r4_x*uhs_base_frame_xx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*uhs_v_1_t;
-        const real axis_y_uhs_axes3_in_base_y = axis_y_uhs_axes3_r4_x*uhs_base_frame_yx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*uhs_v_1_t;
-        const real axis_y_uhs_axes3_in_base_z = axis_y_uhs_axes3_r4_x*uhs_base_frame_zx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*uhs_v_1_t;
-        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*uhs_axis_z_z -
-            axis_y_uhs_axes3_in_base_z*uhs_axis_z_y;
-        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*uhs_axis_z_x -
-            axis_y_uhs_axes3_in_base_x*uhs_axis_z_z;
-        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*uhs_axis_z_y -
-            axis_y_uhs_axes3_in_base_y*uhs_axis_z_x;
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3;
-        const real uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_v_1_r0_y = 1/uhs_v_1_r0_y;
+        const real uhs_s_3 = cosine(uhs_q_3_t);
         /* (uhs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y;
+        const real uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y;
         const real omega_x = s[15*w + j];
-        const real uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z;
-        const real uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x;
+        const real uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z;
+        const real uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x;
         const real t_dot_x = s[12*w + j];
         const real uhs_S_dot_x = t_dot_x + uhs_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3;
-        const real uhs_S_dot_r0_x = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx
-            + uhs_S_dot_z*uhs_base_frame_zx;
-        const real uhs_S_dot_r0_y = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy
-            + uhs_S_dot_z*uhs_base_frame_zy;
-        const real uhs_S_dot_r0_z = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz
-            + uhs_S_dot_z*uhs_base_frame_zz;
-        const real uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1;
-        /* (uhs-qd_3) rate of joint 3 */
-        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 -
-            uhs_S_dot_r1_y*uhs_c_2);
-        const real uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1);
-        const real uhs_qd_2 = inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 -
-            uhs_qd_1*uhs_v_1_r0_x);
-        /* (uhs-omega_1) angular velocity of link 1 */
-        const real uhs_omega_1_t = uhs_qd_1*uhs_s_2;
-        const real uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1;
-        /* (uhs-omega_2) angular velocity of link 2 */
-        const real uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2;
-        const real uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3;
-        /* (uhs-omega_3) angular velocity of link 3 */
-        const real uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3;
-        /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3;
-        const real uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3;
-        /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2;
-        const real uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2;
-        const real uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y;
-        const real uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y;
-        /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t;
-        const real uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y;
-        /* (uhs-W_2) centripetal tensor of link 2 */
-        const real uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t;
-        const real uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2;
-        const real uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2;
-        const real uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2;
-        /* (uhs-W_3) centripetal tensor of link 3 */
-        const real uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x;
-        const real uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y;
-        const real uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z;
-        const real uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y;
-        const real uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z;
-        const real uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z;
-        const real uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2;
-        /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
-        const real uhs_bias_t = m->uhs_bias_t[i];
-        const real uhs_bias_t_2 = uhs_bias_t*uhs_qd_3;
-        const real uhs_bias_x = uhs_bias_t_2*uhs_omega_2_r1_y +
-            uhs_joint3_offset_x*(uhs_zeta_2_t_2 + uhs_omega_1_t*uhs_omega_2_r1_x) +
-            uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y);
-        const real uhs_bias_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
-            uhs_omega_1_t*uhs_omega_2_r1_y) + uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) -
-            uhs_bias_t_2*uhs_omega_2_r1_x;
-        const real uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x;
-        /* (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real uhs_g_r0_x = m->uhs_g_r0_x[i];
-        const real uhs_g_r0_y = m->uhs_g_r0_y[i];
-        const real uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x;
-        const real uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1;
-        const real uhs_g_r0_z = m->uhs_g_r0_z[i];
-        const real uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y;
-        const real uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2;
+        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
+        const real uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3;
+        const real uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2;
+        const real uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2;
+        const real uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y;
+        const real uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x;
         /* (uhs-w_3) reciprocal vector 3 */
-        const real uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x;
-        const real uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y;
-        const real uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z;
-        /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-        const real uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2;
-        const real uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3;
-        const real uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t;
+        const real inv_uhs_root_2 = 1/uhs_root_2;
+        const real axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x;
+        const real axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y;
+        const real axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z;
+        const real uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch;
+        const real uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch;
+        const real uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch;
+        /* (uhs-qd_1) rate of joint 1 */
+        const real inv_uhs_v_1_in_axes2_z = 1/uhs_v_1_in_axes2_z;
+        const real uhs_qd_1_t = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx;
+        const real uhs_qd_1_t_2 = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy;
+        const real uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1);
+        /* (uhs-qd_2) rate of joint 2 */
+        const real uhs_qd_2_t = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz;
+        const real uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2;
+        const real uhs_qd_2 = inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 -
+            uhs_qd_1*uhs_v_1_in_axes2_y);
+        /* (uhs-qd_3) rate of joint 3 */
+        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2);
+        /* (uhs-omega_1) angular velocity of link 1 */
+        const real uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2;
+        const real uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1;
+        /* (uhs-omega_2) angular velocity of link 2 */
+        const real uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3;
+        const real uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3;
+        /* (uhs-W_2) centripetal tensor of link 2 */
+        const real uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2;
+        const real uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2;
+        const real uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y;
+        const real uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x;
+        const real uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y;
+        const real uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
+        const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
+        /* (uhs-omega_3) angular velocity of link 3 */
+        const real uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3;
+        /* (uhs-W_3) centripetal tensor of link 3 */
+        const real uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
+        const real uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
         /* (uhs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y;
+        const real uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z;
+        const real uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x;
+        const real uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x;
         /* (uhs-S_ddot) acceleration of the connection point */
+        const real uhs_S_ddot_t = uhs_s_2*uhs_s_3;
+        const real uhs_S_ddot_t_2 = uhs_c_1*uhs_c_3 - uhs_S_ddot_t*uhs_s_1;
+        const real uhs_S_ddot_t_3 = uhs_S_ddot_t*uhs_c_1 + uhs_c_3*uhs_s_1;
+        const real axis_y_uhs_axes3_x = uhs_S_ddot_t_2*uhs_base_frame_xx +
+            uhs_S_ddot_t_3*uhs_base_frame_xy + uhs_base_frame_xz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_y = uhs_S_ddot_t_2*uhs_base_frame_yx +
+            uhs_S_ddot_t_3*uhs_base_frame_yy + uhs_base_frame_yz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_z = uhs_S_ddot_t_2*uhs_base_frame_zx +
+            uhs_S_ddot_t_3*uhs_base_frame_zy + uhs_base_frame_zz*uhs_e_1_in_axes3_y;
+        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*axis_z_uhs_axes3_z -
+            axis_y_uhs_axes3_z*axis_z_uhs_axes3_y;
+        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*axis_z_uhs_axes3_x -
+            axis_y_uhs_axes3_x*axis_z_uhs_axes3_z;
+        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*axis_z_uhs_axes3_y -
+            axis_y_uhs_axes3_y*axis_z_uhs_axes3_x;
         const real uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2;
         const real uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3;
         const real uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t;
-        const real uhs_S_ddot_tip_x = axis_x_uhs_axes3_x*uhs_S_ddot_x +
+        const real uhs_S_ddot_in_axes3_x = axis_x_uhs_axes3_x*uhs_S_ddot_x +
             axis_x_uhs_axes3_y*uhs_S_ddot_y + axis_x_uhs_axes3_z*uhs_S_ddot_z;
-        const real uhs_S_ddot_tip_y = axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x +
-            axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y + axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z;
-        const real uhs_S_ddot_tip_z = uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y +
-            uhs_S_ddot_z*uhs_axis_z_z;
+        const real uhs_S_ddot_in_axes3_y = axis_y_uhs_axes3_x*uhs_S_ddot_x +
+            axis_y_uhs_axes3_y*uhs_S_ddot_y + axis_y_uhs_axes3_z*uhs_S_ddot_z;
+        const real uhs_S_ddot_in_axes3_z = axis_z_uhs_axes3_x*uhs_S_ddot_x +
+            axis_z_uhs_axes3_y*uhs_S_ddot_y + axis_z_uhs_axes3_z*uhs_S_ddot_z;
+        /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3;
+        const real uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3;
+        /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3;
+        const real uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3;
+        /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t;
+        const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y;
+        /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
+        const real uhs_bias_t = m->uhs_bias_t[i];
+        const real uhs_bias_t_2 = uhs_bias_t*uhs_qd_3;
+        const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
+            uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y);
+        const real uhs_bias_in_axes3_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
+            uhs_bias_t_2*uhs_omega_2_in_axes3_x;
+        const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x -
+            uhs_W_2_t_3*uhs_x_3_in_axes2_x;
         /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
-        const real uhs_rel_x = uhs_S_ddot_tip_x - uhs_bias_x;
-        const real uhs_rel_y = uhs_S_ddot_tip_y - uhs_bias_y;
-        const real uhs_rel_z = uhs_S_ddot_tip_z - uhs_bias_z;
+        const real uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x;
+        const real uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y;
+        const real uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z;
         /* (uhs-qdd_1) acceleration of joint 1 */
-        const real uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3);
-        const real uhs_qdd_2 = inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 -
-            uhs_c_3_t*uhs_rel_x);
+        const real uhs_qdd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y +
+            uhs_rel_in_axes3_x*uhs_s_3);
+        /* (uhs-qdd_2) acceleration of joint 2 */
+        const real uhs_qdd_2_t = inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y +
+            uhs_rel_in_axes3_y*uhs_s_3 - uhs_c_3*uhs_rel_in_axes3_x);
+        /* (uhs-alpha_1) angular acceleration of link 1 */
+        const real uhs_alpha_1_in_axes2_x = uhs_qdd_1*uhs_s_2;
+        const real uhs_alpha_1_in_axes2_y = uhs_c_2*uhs_qdd_1;
+        /* (uhs-alpha_2) angular acceleration of link 2 */
+        const real uhs_alpha_2_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_in_axes2_x;
+        const real uhs_alpha_2_in_axes2_y = uhs_alpha_1_in_axes2_y - uhs_W_2_in_axes2_xz;
+        /* (uhs-B_2) acceleration tensor of link 2 */
+        const real uhs_B_2_in_axes2_xy = uhs_W_2_in_axes2_xy + uhs_qdd_2_t;
+        const real uhs_B_2_in_axes2_yx = uhs_W_2_in_axes2_xy - uhs_qdd_2_t;
+        const real uhs_B_2_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_in_axes2_y;
+        const real uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x;
+        /* (uhs-alpha_3) angular acceleration of link 3 */
+        const real uhs_alpha_3_in_axes3_x = uhs_zeta_3_in_axes3_x + uhs_alpha_2_in_axes2_y*uhs_c_3
+            - uhs_qdd_2_t*uhs_s_3;
+        const real uhs_alpha_3_in_axes3_y = uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_s_3
+            - uhs_c_3*uhs_qdd_2_t;
+        const real uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x +
+            inv_uhs_joint3_pitch*uhs_rel_in_axes3_z;
+        /* (uhs-B_3) acceleration tensor of link 3 */
+        const real uhs_B_3_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z;
+        const real uhs_B_3_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_in_axes3_y;
+        const real uhs_B_3_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_in_axes3_z;
+        const real uhs_B_3_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_in_axes3_x;
+        const real uhs_B_3_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y;
+        const real uhs_B_3_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x;
         /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real uhs_acc_3_x = uhs_S_ddot_tip_x - axis_x_uhs_axes3_x*gravity_x -
+        const real uhs_acc_3_in_axes3_x = uhs_S_ddot_in_axes3_x - axis_x_uhs_axes3_x*gravity_x -
             axis_x_uhs_axes3_y*gravity_y - axis_x_uhs_axes3_z*gravity_z;
-        const real uhs_acc_3_y = uhs_S_ddot_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
-            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z;
-        const real uhs_acc_3_z = uhs_S_ddot_tip_z - gravity_x*uhs_axis_z_x -
-            gravity_y*uhs_axis_z_y - gravity_z*uhs_axis_z_z;
-        /* (uhs-alpha_1) angular acceleration of link 1 */
-        const real uhs_alpha_1_t = uhs_qdd_1*uhs_s_2;
-        const real uhs_alpha_1_t_2 = uhs_c_2*uhs_qdd_1;
-        /* (uhs-alpha_2) angular acceleration of link 2 */
-        const real uhs_alpha_2_x = uhs_alpha_1_t - uhs_zeta_2_x;
-        const real uhs_alpha_2_y = -uhs_alpha_1_t_2 - uhs_zeta_2_y;
-        /* (uhs-alpha_3) angular acceleration of link 3 */
-        const real uhs_alpha_3_x = uhs_zeta_3_x + uhs_alpha_2_y*uhs_c_3_t - uhs_qdd_2*uhs_s_3;
-        const real uhs_alpha_3_y = -uhs_zeta_3_y - uhs_alpha_2_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2;
-        const real uhs_alpha_3_z = uhs_alpha_2_x + inv_uhs_joint3_pitch*uhs_rel_z;
-        /* (uhs-B_3) acceleration tensor of link 3 */
-        const real uhs_B_3_xy = uhs_W_3_xy - uhs_alpha_3_z;
-        const real uhs_B_3_xz = uhs_W_3_xz + uhs_alpha_3_y;
-        const real uhs_B_3_yx = uhs_W_3_xy + uhs_alpha_3_z;
-        const real uhs_B_3_yz = uhs_W_3_yz - uhs_alpha_3_x;
-        const real uhs_B_3_zx = uhs_W_3_xz - uhs_alpha_3_y;
-        const real uhs_B_3_zy = uhs_W_3_yz + uhs_alpha_3_x;
+        const real uhs_acc_3_in_axes3_y = uhs_S_ddot_in_axes3_y - axis_y_uhs_axes3_x*gravity_x -
+            axis_y_uhs_axes3_y*gravity_y - axis_y_uhs_axes3_z*gravity_z;
+        const real uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - axis_z_uhs_axes3_x*gravity_x -
+            axis_z_uhs_axes3_y*gravity_y - axis_z_uhs_axes3_z*gravity_z;
         /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real uhs_J_3_xy = m->uhs_J_3_xy[i];
-        const real uhs_J_3_xz = m->uhs_J_3_xz[i];
-        const real uhs_J_3_yz = m->uhs_J_3_yz[i];
-        const real uhs_Sigma_3_yy = m->uhs_Sigma_3_yy[i];
-        const real uhs_Sigma_3_zz = m->uhs_Sigma_3_zz[i];
-        const real uhs_h_3_x = m->uhs_h_3_x[i];
-        const real uhs_h_3_z = m->uhs_h_3_z[i];
-        const real uhs_mu_3_x = uhs_B_3_yx*uhs_J_3_xy + uhs_B_3_zy*uhs_Sigma_3_yy +
-            uhs_J_3_xz*(uhs_W_3_t_2 - uhs_W_3_t_3) + uhs_acc_3_z*uhs_h_3_z -
-            uhs_B_3_yz*uhs_Sigma_3_zz - uhs_B_3_zx*uhs_J_3_yz - uhs_acc_3_y*uhs_h_3_x;
-        const real uhs_Sigma_3_xx = m->uhs_Sigma_3_xx[i];
-        const real uhs_h_3_y = m->uhs_h_3_y[i];
-        const real uhs_mu_3_y = uhs_B_3_xz*uhs_Sigma_3_zz + uhs_B_3_zy*uhs_J_3_yz +
-            uhs_acc_3_x*uhs_h_3_x - uhs_B_3_xy*uhs_J_3_xz - uhs_B_3_zx*uhs_Sigma_3_xx -
-            uhs_J_3_xy*(uhs_W_3_t - uhs_W_3_t_3) - uhs_acc_3_z*uhs_h_3_y;
-        const real uhs_mu_3_z = uhs_B_3_xz*uhs_J_3_xz + uhs_B_3_yx*uhs_Sigma_3_xx +
-            uhs_J_3_yz*(uhs_W_3_t - uhs_W_3_t_2) + uhs_acc_3_y*uhs_h_3_y -
-            uhs_B_3_xy*uhs_Sigma_3_yy - uhs_B_3_yz*uhs_J_3_xy - uhs_acc_3_x*uhs_h_3_z;
-        /* (uhs-B_2) acceleration tensor of link 2 */
-        const real uhs_B_2_xy = uhs_qdd_2 - uhs_W_2_xy;
-        const real uhs_B_2_yx = -uhs_W_2_xy - uhs_qdd_2;
-        const real uhs_B_2_zx = uhs_zeta_2_y - uhs_alpha_2_y;
-        const real uhs_B_2_zy = uhs_alpha_2_x - uhs_zeta_2_x;
+        const real uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
+        const real uhs_J_3_in_spec3_xy = m->uhs_J_3_in_spec3_xy[i];
+        const real uhs_J_3_in_spec3_xz = m->uhs_J_3_in_spec3_xz[i];
+        const real uhs_J_3_in_spec3_yz = m->uhs_J_3_in_spec3_yz[i];
+        const real uhs_Sigma_3_in_axes3_yy = m->uhs_Sigma_3_in_axes3_yy[i];
+        const real uhs_Sigma_3_in_axes3_zz = m->uhs_Sigma_3_in_axes3_zz[i];
+        const real uhs_h_3_in_spec3_x = m->uhs_h_3_in_spec3_x[i];
+        const real uhs_h_3_in_spec3_z = m->uhs_h_3_in_spec3_z[i];
+        const real uhs_mu_3_in_axes3_x = uhs_B_3_in_axes3_yx*uhs_J_3_in_spec3_xy +
+            uhs_B_3_in_axes3_zy*uhs_Sigma_3_in_axes3_yy + uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 -
+            uhs_mu_3_t) + uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_z -
+            uhs_B_3_in_axes3_yz*uhs_Sigma_3_in_axes3_zz - uhs_B_3_in_axes3_zx*uhs_J_3_in_spec3_yz
+            - uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_x;
+        const real uhs_Sigma_3_in_axes3_xx = m->uhs_Sigma_3_in_axes3_xx[i];
+        const real uhs_h_3_in_spec3_y = m->uhs_h_3_in_spec3_y[i];
+        const real uhs_mu_3_in_axes3_y = uhs_B_3_in_axes3_xz*uhs_Sigma_3_in_axes3_zz +
+            uhs_B_3_in_axes3_zy*uhs_J_3_in_spec3_yz + uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_x -
+            uhs_B_3_in_axes3_xy*uhs_J_3_in_spec3_xz - uhs_B_3_in_axes3_zx*uhs_Sigma_3_in_axes3_xx
+            - uhs_J_3_in_spec3_xy*(uhs_W_2_t - uhs_mu_3_t) -
+            uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_y;
+        const real uhs_mu_3_in_axes3_z = uhs_B_3_in_axes3_xz*uhs_J_3_in_spec3_xz +
+            uhs_B_3_in_axes3_yx*uhs_Sigma_3_in_axes3_xx + uhs_J_3_in_spec3_yz*(uhs_W_2_t -
+            uhs_W_2_t_2) + uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_y -
+            uhs_B_3_in_axes3_xy*uhs_Sigma_3_in_axes3_yy - uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy
+            - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z;
         /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real uhs_J_2_xy = m->uhs_J_2_xy[i];
-        const real uhs_J_2_xz = m->uhs_J_2_xz[i];
-        const real uhs_J_2_yz = m->uhs_J_2_yz[i];
-        const real uhs_Sigma_2_yy = m->uhs_Sigma_2_yy[i];
-        const real uhs_Sigma_2_zz = m->uhs_Sigma_2_zz[i];
-        const real uhs_h_2_y = m->uhs_h_2_y[i];
-        const real uhs_h_2_z = m->uhs_h_2_z[i];
-        const real uhs_mu_2_x = uhs_B_2_yx*uhs_J_2_xy + uhs_B_2_zx*uhs_J_2_xz +
-            uhs_B_2_zy*uhs_Sigma_2_yy + uhs_Sigma_2_zz*uhs_alpha_1_t + uhs_g_r1_x*uhs_h_2_z +
-            uhs_g_r3_y*uhs_h_2_y - uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3);
-        const real uhs_Sigma_2_xx = m->uhs_Sigma_2_xx[i];
-        const real uhs_h_2_x = m->uhs_h_2_x[i];
-        const real uhs_mu_2_y = uhs_B_2_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x -
-            uhs_B_2_zx*uhs_Sigma_2_xx - uhs_B_2_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t -
-            uhs_W_2_t_3) - uhs_Sigma_2_zz*uhs_alpha_1_t_2 - uhs_g_r3_x*uhs_h_2_y;
-        const real uhs_mu_2_z = uhs_B_2_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_t +
-            uhs_J_2_yz*uhs_alpha_1_t_2 - uhs_B_2_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t -
-            uhs_W_2_t_2) - uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x;
+        const real uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
+        const real uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
+        const real uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2;
+        const real uhs_mu_2_t = m->uhs_mu_2_t[i];
+        const real uhs_mu_2_t_2 = m->uhs_mu_2_t_2[i];
+        const real uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1;
+        const real uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1;
+        const real uhs_mu_2_t_3 = m->uhs_mu_2_t_3[i];
+        const real uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_mu_2_t_3*uhs_s_2;
+        const real uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_t_7*uhs_s_2;
+        const real uhs_J_2_in_spec2_xy = m->uhs_J_2_in_spec2_xy[i];
+        const real uhs_J_2_in_spec2_xz = m->uhs_J_2_in_spec2_xz[i];
+        const real uhs_J_2_in_spec2_yz = m->uhs_J_2_in_spec2_yz[i];
+        const real uhs_Sigma_2_in_axes2_yy = m->uhs_Sigma_2_in_axes2_yy[i];
+        const real uhs_Sigma_2_in_axes2_zz = m->uhs_Sigma_2_in_axes2_zz[i];
+        const real uhs_h_2_in_spec2_y = m->uhs_h_2_in_spec2_y[i];
+        const real uhs_h_2_in_spec2_z = m->uhs_h_2_in_spec2_z[i];
+        const real uhs_mu_2_in_axes2_x = uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy +
+            uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz + uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy
+            + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y
+            + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 -
+            uhs_mu_2_t_6);
+        const real uhs_Sigma_2_in_axes2_xx = m->uhs_Sigma_2_in_axes2_xx[i];
+        const real uhs_h_2_in_spec2_x = m->uhs_h_2_in_spec2_x[i];
+        const real uhs_mu_2_in_axes2_y = uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_x -
+            uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx - uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz
+            - uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6) -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_y;
+        const real uhs_mu_2_in_axes2_z = uhs_B_2_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_in_axes2_x -
+            uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 -
+            uhs_mu_2_t_5) - uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x;
         /* (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real uhs_N_2_x = uhs_mu_2_x + uhs_mu_3_z;
-        const real uhs_N_2_y = uhs_mu_2_y + uhs_c_3_t*uhs_mu_3_x - uhs_mu_3_y*uhs_s_3;
-        const real uhs_N_2_z = uhs_mu_2_z + uhs_c_3_t*uhs_mu_3_y + uhs_mu_3_x*uhs_s_3;
-        /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real uhs_G_t = inv_uhs_root_2*uhs_N_2_z;
-        const real uhs_G_t_2 = inv_uhs_v_1_r0_y*(uhs_G_t*uhs_v_1_r0_x + uhs_N_2_y*uhs_c_2 -
-            uhs_N_2_x*uhs_s_2);
+        const real uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z;
+        const real uhs_N_2_in_axes2_y = uhs_mu_2_in_axes2_y + uhs_c_3*uhs_mu_3_in_axes3_x -
+            uhs_mu_3_in_axes3_y*uhs_s_3;
+        const real uhs_N_2_in_axes2_z = uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_y +
+            uhs_mu_3_in_axes3_x*uhs_s_3;
         /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real uhs_c_x = uhs_G_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) -
-            uhs_B_3_xy*uhs_h_3_z - uhs_B_3_xz*uhs_h_3_x - uhs_G_t*uhs_c_3_t;
-        const real uhs_c_y = uhs_G_t*uhs_s_3 + uhs_G_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t +
-            uhs_W_3_t_3) - uhs_B_3_yx*uhs_h_3_y - uhs_B_3_yz*uhs_h_3_x;
-        const real uhs_c_z = uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_z -
-            uhs_B_3_zx*uhs_h_3_y - uhs_B_3_zy*uhs_h_3_z;
-        const real uhs_c_in_base_x = axis_x_uhs_axes3_x*uhs_c_x +
-            axis_y_uhs_axes3_in_base_x*uhs_c_y + uhs_axis_z_x*uhs_c_z;
-        const real uhs_c_in_base_y = axis_x_uhs_axes3_y*uhs_c_x +
-            axis_y_uhs_axes3_in_base_y*uhs_c_y + uhs_axis_z_y*uhs_c_z;
-        const real uhs_c_in_base_z = axis_x_uhs_axes3_z*uhs_c_x +
-            axis_y_uhs_axes3_in_base_z*uhs_c_y + uhs_axis_z_z*uhs_c_z;
+        const real uhs_c_t = inv_uhs_root_2*uhs_N_2_in_axes2_z;
+        const real uhs_c_t_2 = inv_uhs_v_1_in_axes2_z*(uhs_c_t*uhs_v_1_in_axes2_y -
+            uhs_N_2_in_axes2_x*uhs_s_2 - uhs_N_2_in_axes2_y*uhs_c_2);
+        const real uhs_c_in_axes3_x = uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 +
+            uhs_mu_3_t) - uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_3*uhs_c_t;
+        const real uhs_c_in_axes3_y = uhs_c_3*uhs_c_t_2 + uhs_c_t*uhs_s_3 +
+            uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) - uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y -
+            uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x;
+        const real uhs_c_in_axes3_z = uhs_W_2_t_3*uhs_h_3_in_spec3_x -
+            inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z - uhs_B_3_in_axes3_zx*uhs_h_3_in_spec3_y -
+            uhs_B_3_in_axes3_zy*uhs_h_3_in_spec3_z;
+        const real uhs_c_x = axis_x_uhs_axes3_x*uhs_c_in_axes3_x +
+            axis_y_uhs_axes3_x*uhs_c_in_axes3_y + axis_z_uhs_axes3_x*uhs_c_in_axes3_z;
+        const real uhs_c_y = axis_x_uhs_axes3_y*uhs_c_in_axes3_x +
+            axis_y_uhs_axes3_y*uhs_c_in_axes3_y + axis_z_uhs_axes3_y*uhs_c_in_axes3_z;
+        const real uhs_c_z = axis_x_uhs_axes3_z*uhs_c_in_axes3_x +
+            axis_y_uhs_axes3_z*uhs_c_in_axes3_y + axis_z_uhs_axes3_z*uhs_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real uhs_R_a_t = uhs_c_in_base_z*uhs_q_in_base_y - uhs_c_in_base_y*uhs_q_in_base_z;
-        const real uhs_R_a_t_2 = uhs_c_in_base_x*uhs_q_in_base_z -
-            uhs_c_in_base_z*uhs_q_in_base_x;
-        const real uhs_R_a_t_3 = uhs_c_in_base_y*uhs_q_in_base_x -
-            uhs_c_in_base_x*uhs_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + uhs_c_in_base_x : uhs_c_in_base_x;  /* total_uhs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + uhs_c_in_base_y : uhs_c_in_base_y;  /* total_uhs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + uhs_c_in_base_z : uhs_c_in_base_z;  /* total_uhs_z */
-        terms[3*count + k] = add ? terms[3*count + k] + uhs_R_a_t : uhs_R_a_t;  /* total_uhs_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + uhs_R_a_t_2 : uhs_R_a_t_2;  /* total_uhs_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + uhs_R_a_t_3 : uhs_R_a_t_3;  /* total_uhs_z_2 */
-        o[0*count + k] = uhs_w_3_t;
-        o[1*count + k] = uhs_w_3_t_2;
-        o[2*count + k] = uhs_w_3_t_3;
+        const real uhs_R_a_t = uhs_c_y*uhs_q_z - uhs_c_z*uhs_q_y;
+        const real uhs_R_a_t_2 = uhs_c_z*uhs_q_x - uhs_c_x*uhs_q_z;
+        const real uhs_R_a_t_3 = uhs_c_x*uhs_q_y - uhs_c_y*uhs_q_x;
+        /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
+        const real uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y;
+        const real uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z;
+        const real uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + uhs_c_x : uhs_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + uhs_c_y : uhs_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + uhs_c_z : uhs_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + uhs_R_a_t : uhs_R_a_t;  /* R_a_uhs_x */
+        terms[4*count + k] = add ? terms[4*count + k] + uhs_R_a_t_2 : uhs_R_a_t_2;  /* R_a_uhs_y */
+        terms[5*count + k] = add ? terms[5*count + k] + uhs_R_a_t_3 : uhs_R_a_t_3;  /* R_a_uhs_z */
+        /* (uhs-w_3) reciprocal vector 3 */
+        o[0*count + k] = uhs_w_3_x;
+        o[1*count + k] = uhs_w_3_y;
+        o[2*count + k] = uhs_w_3_z;
+        /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = uhs_H_a_3_x;
         o[4*count + k] = uhs_H_a_3_y;
         o[5*count + k] = uhs_H_a_3_z;
@@ -3881,8 +4037,8 @@ INLINE void required_legs_uhs(const prepared *m, size_t w, size_t leg, size_t le
         const real uhs_size = m->uhs_size[i];
         o[6*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
             UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) + UNLESS(magnitude(uhs_v_1_r0_y) >
-            TOLERANCE*uhs_size);
+            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) +
+            UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*uhs_size);
     }
 }
 
@@ -3904,28 +4060,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_uhs_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_uhs_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_uhs_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_uhs_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_uhs_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_uhs_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_uhs_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_uhs_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_uhs_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_uhs_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_uhs_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_uhs_z_2;
+        const real R_a_uhs_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_uhs_x + mu_p_x;
+        const real R_a_uhs_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_uhs_y + mu_p_y;
+        const real R_a_uhs_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_uhs_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -4062,38 +4220,40 @@ INLINE void inverse_kinematics_legs_uhs(const prepared *m, size_t w, size_t leg,
         /* (uhs-root_1) root, with the sign of the branch */
         const real uhs_branch_1 = m->uhs_branch_1[i];
         const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
+        /* (uhs-q_1) displacement of joint 1 */
+        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
+        const real uhs_q_1 = angle(inv_uhs_rho2_1*uhs_py_1*uhs_root_1,
+            inv_uhs_rho2_1*uhs_px_1*uhs_root_1);
         /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
+        /* (uhs-q_2) displacement of joint 2 */
+        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
+        const real uhs_q_2 = angle(-inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z,
+            inv_uhs_rho2_2*uhs_root_1*uhs_root_2);
         /* (uhs-x_3) from the origin of joint 3 to the connection point */
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
+        const real uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x;
         /* (uhs-q_3) displacement of joint 3 */
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
+        const real uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_x_3_in_axes2_x);
         /* (uhs-q_1) displacement of joint 1 */
-        const real uhs_q_1 = angle(inv_uhs_rho2_1*uhs_py_1*uhs_root_1,
-            inv_uhs_rho2_1*uhs_px_1*uhs_root_1);
-        /* (uhs-q_2) displacement of joint 2 */
-        const real uhs_q_2 = angle(-inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t,
-            inv_uhs_rho2_2*uhs_root_1*uhs_root_2);
         o[0*count + k] = uhs_q_1;
+        /* (uhs-q_2) displacement of joint 2 */
         o[1*count + k] = uhs_q_2;
-        o[2*count + k] = -uhs_q_3;
-        o[4*count + k] = uhs_q_1 + (uhs_q_2 + uhs_q_3);
+        /* (uhs-q_3) displacement of joint 3 */
+        o[2*count + k] = -uhs_q_3_t;
+        o[4*count + k] = uhs_q_1 + (uhs_q_2 + uhs_q_3_t);
         const real uhs_size_t = m->uhs_size_t[i];
         o[3*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
             UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t);
@@ -4218,27 +4378,27 @@ INLINE void joint_rates_legs_uhs(const prepared *m, size_t w, size_t leg, size_t
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_S_x = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_S_y = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
+        const real uhs_S_z = t_z + uhs_q_z - uhs_base_point_z;
         /* (uhs-px_1) component along the reference direction */
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
@@ -4256,76 +4416,80 @@ INLINE void joint_rates_legs_uhs(const prepared *m, size_t w, size_t leg, size_t
         /* (uhs-root_1) root, with the sign of the branch */
         const real uhs_branch_1 = m->uhs_branch_1[i];
         const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
+        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
+        const real uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
+        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
         /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
+        const real uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
+        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z;
         /* (uhs-x_3) from the origin of joint 3 to the connection point */
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
+        const real uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x;
         /* (uhs-q_3) displacement of joint 3 */
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t;
+        const real uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_x_3_in_axes2_x);
         /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
+        const real uhs_c_3 = sine(uhs_q_3_t);
         /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3;
-        const real uhs_v_1_t_2 = uhs_c_2*uhs_c_3_t*uhs_root_2;
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-        const real uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
-        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_2 + uhs_s_3*uhs_v_1_t;
+        const real uhs_s_3 = cosine(uhs_q_3_t);
         /* (uhs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real uhs_S_dot_x = t_dot_x + omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y;
+        const real uhs_S_dot_x = t_dot_x + omega_y*uhs_q_z - omega_z*uhs_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real uhs_S_dot_y = t_dot_y + omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z;
+        const real uhs_S_dot_y = t_dot_y + omega_z*uhs_q_x - omega_x*uhs_q_z;
         const real t_dot_z = s[14*w + j];
-        const real uhs_S_dot_z = t_dot_z + omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x;
-        const real uhs_S_dot_r0_x = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx
-            + uhs_S_dot_z*uhs_base_frame_zx;
-        const real uhs_S_dot_r0_y = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy
-            + uhs_S_dot_z*uhs_base_frame_zy;
-        const real uhs_S_dot_r0_z = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz
-            + uhs_S_dot_z*uhs_base_frame_zz;
-        const real uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1;
+        const real uhs_S_dot_z = t_dot_z + omega_x*uhs_q_y - omega_y*uhs_q_x;
+        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
+        const real uhs_v_1_in_axes3_x = -uhs_c_2*uhs_root_2*uhs_s_3;
+        const real uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2;
+        const real uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x;
+        /* (uhs-qd_1) rate of joint 1 */
+        const real uhs_qd_1_t = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx;
+        const real uhs_qd_1_t_2 = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy;
+        const real uhs_qd_1 = (uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)/uhs_v_1_in_axes2_z;
+        /* (uhs-qd_2) rate of joint 2 */
+        const real uhs_qd_2_t = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz;
+        const real uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2;
+        const real uhs_qd_2 = (uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 -
+            uhs_qd_1*(uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y))/uhs_root_2;
         /* (uhs-qd_3) rate of joint 3 */
-        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 -
-            uhs_S_dot_r1_y*uhs_c_2);
-        const real uhs_qd_1 = (uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)/uhs_v_1_r0_y;
-        const real uhs_qd_2 = (-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 -
-            uhs_qd_1*(uhs_c_3_t*uhs_v_1_t - uhs_s_3*uhs_v_1_t_2))/uhs_root_2;
+        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2);
+        /* (uhs-qd_1) rate of joint 1 */
         o[0*count + k] = uhs_qd_1;
+        /* (uhs-qd_2) rate of joint 2 */
         o[1*count + k] = uhs_qd_2;
+        /* (uhs-qd_3) rate of joint 3 */
         o[2*count + k] = uhs_qd_3;
         o[4*count + k] = uhs_qd_1 + (uhs_qd_2 + uhs_qd_3);
         const real uhs_size_t = m->uhs_size_t[i];
         const real uhs_size = m->uhs_size[i];
         o[3*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
             UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) + UNLESS(magnitude(uhs_v_1_r0_y) >
-            TOLERANCE*uhs_size);
+            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) +
+            UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*uhs_size);
     }
 }
 
@@ -4468,27 +4632,27 @@ INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t w, size_t leg
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_S_x = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_S_y = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
+        const real uhs_S_z = t_z + uhs_q_z - uhs_base_point_z;
         /* (uhs-px_1) component along the reference direction */
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
@@ -4506,157 +4670,167 @@ INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t w, size_t leg
         /* (uhs-root_1) root, with the sign of the branch */
         const real uhs_branch_1 = m->uhs_branch_1[i];
         const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
+        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
+        const real uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
+        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
         /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
+        const real uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
+        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z;
         /* (uhs-x_3) from the origin of joint 3 to the connection point */
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
+        const real uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x;
         /* (uhs-q_3) displacement of joint 3 */
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t;
+        const real uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_x_3_in_axes2_x);
         /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
+        const real uhs_c_3 = sine(uhs_q_3_t);
         /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_t = uhs_c_2*uhs_s_3;
-        const real uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t;
-        const real uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_root_2 = 1/uhs_root_2;
-        const real uhs_axis_z_x = inv_uhs_root_2*uhs_S_x;
-        const real uhs_axis_z_y = inv_uhs_root_2*uhs_S_y;
-        const real uhs_axis_z_z = inv_uhs_root_2*uhs_S_z;
-        const real uhs_w_1_t = uhs_s_2*uhs_s_3;
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-        const real uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
-        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_in_base_x = axis_y_uhs_axes3_r4_x*uhs_base_frame_xx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*uhs_v_1_t;
-        const real axis_y_uhs_axes3_in_base_y = axis_y_uhs_axes3_r4_x*uhs_base_frame_yx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*uhs_v_1_t;
-        const real axis_y_uhs_axes3_in_base_z = axis_y_uhs_axes3_r4_x*uhs_base_frame_zx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*uhs_v_1_t;
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3;
-        const real uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_v_1_r0_y = 1/uhs_v_1_r0_y;
+        const real uhs_s_3 = cosine(uhs_q_3_t);
         /* (uhs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y;
+        const real uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y;
         const real omega_x = s[15*w + j];
-        const real uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z;
-        const real uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x;
+        const real uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z;
+        const real uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x;
         const real t_dot_x = s[12*w + j];
         const real uhs_S_dot_x = t_dot_x + uhs_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3;
-        const real uhs_S_dot_r0_x = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx
-            + uhs_S_dot_z*uhs_base_frame_zx;
-        const real uhs_S_dot_r0_y = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy
-            + uhs_S_dot_z*uhs_base_frame_zy;
-        const real uhs_S_dot_r0_z = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz
-            + uhs_S_dot_z*uhs_base_frame_zz;
-        const real uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1;
+        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
+        const real uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3;
+        const real uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2;
+        const real uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2;
+        const real uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y;
+        const real uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x;
+        /* (uhs-qd_1) rate of joint 1 */
+        const real inv_uhs_v_1_in_axes2_z = 1/uhs_v_1_in_axes2_z;
+        const real uhs_qd_1_t = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx;
+        const real uhs_qd_1_t_2 = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy;
+        const real uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1);
+        /* (uhs-qd_2) rate of joint 2 */
+        const real inv_uhs_root_2 = 1/uhs_root_2;
+        const real uhs_qd_2_t = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz;
+        const real uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2;
+        const real uhs_qd_2 = inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 -
+            uhs_qd_1*uhs_v_1_in_axes2_y);
         /* (uhs-qd_3) rate of joint 3 */
-        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 -
-            uhs_S_dot_r1_y*uhs_c_2);
-        const real uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1);
-        const real uhs_qd_2 = inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 -
-            uhs_qd_1*uhs_v_1_r0_x);
+        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2);
         /* (uhs-omega_1) angular velocity of link 1 */
-        const real uhs_omega_1_t = uhs_qd_1*uhs_s_2;
-        const real uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1;
+        const real uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2;
+        const real uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1;
         /* (uhs-omega_2) angular velocity of link 2 */
-        const real uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2;
-        const real uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3;
+        const real uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3;
+        const real uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3;
+        /* (uhs-W_2) centripetal tensor of link 2 */
+        const real uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2;
+        const real uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x +
+            uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y;
         /* (uhs-omega_3) angular velocity of link 3 */
-        const real uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3;
-        /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2;
-        const real uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y;
-        const real uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y;
-        /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real uhs_beta_3_x = uhs_omega_2_r1_y*uhs_qd_3 - uhs_zeta_2_t;
-        const real uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_omega_2_r1_x*uhs_qd_3;
-        /* (uhs-W_3) centripetal tensor of link 3 */
-        const real uhs_W_3_zz = uhs_omega_2_r1_x*uhs_omega_2_r1_x +
-            uhs_omega_2_r1_y*uhs_omega_2_r1_y;
-        /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
-        const real uhs_bias_t = m->uhs_bias_t[i];
-        const real uhs_bias_t_2 = uhs_bias_t*uhs_qd_3;
-        const real uhs_bias_x = uhs_bias_t_2*uhs_omega_2_r1_y +
-            uhs_joint3_offset_x*(uhs_zeta_2_t_2 + uhs_omega_1_t*uhs_omega_2_r1_x) +
-            uhs_x_3_x*(uhs_beta_3_y + uhs_omega_2_r1_x*uhs_omega_3_z);
-        const real uhs_bias_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
-            uhs_omega_1_t*uhs_omega_2_r1_y) + uhs_x_3_x*(uhs_omega_2_r1_y*uhs_omega_3_z -
-            uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x;
-        const real uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x;
+        const real uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3;
         /* (uhs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y;
+        const real uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z;
+        const real uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x;
+        const real uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x;
         /* (uhs-S_ddot) acceleration of the connection point */
         const real uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2;
         const real uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3;
         const real uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t;
+        /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3;
+        const real uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3;
+        /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real uhs_beta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3 - uhs_zeta_2_t;
+        const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y -
+            uhs_omega_2_in_axes3_x*uhs_qd_3;
+        /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
+        const real uhs_bias_t = m->uhs_bias_t[i];
+        const real uhs_bias_t_2 = uhs_bias_t*uhs_qd_3;
+        const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
+            uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_beta_3_in_axes3_y +
+            uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z);
+        const real uhs_bias_in_axes3_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+            uhs_x_3_in_axes2_x*(uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x;
+        const real uhs_bias_in_axes3_z = -uhs_W_2_t*uhs_joint3_offset_x -
+            uhs_W_2_t*uhs_x_3_in_axes2_x;
         /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
-        const real uhs_rel_x = uhs_S_ddot_x*(axis_y_uhs_axes3_in_base_y*uhs_axis_z_z -
-            axis_y_uhs_axes3_in_base_z*uhs_axis_z_y) +
-            uhs_S_ddot_y*(axis_y_uhs_axes3_in_base_z*uhs_axis_z_x -
-            axis_y_uhs_axes3_in_base_x*uhs_axis_z_z) +
-            uhs_S_ddot_z*(axis_y_uhs_axes3_in_base_x*uhs_axis_z_y -
-            axis_y_uhs_axes3_in_base_y*uhs_axis_z_x) - uhs_bias_x;
-        const real uhs_rel_y = axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x +
-            axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y + axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z -
-            uhs_bias_y;
-        const real uhs_rel_z = uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y +
-            uhs_S_ddot_z*uhs_axis_z_z - uhs_bias_z;
+        const real axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x;
+        const real axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y;
+        const real axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z;
+        const real uhs_rel_t = uhs_s_2*uhs_s_3;
+        const real uhs_rel_t_2 = uhs_c_1*uhs_c_3 - uhs_rel_t*uhs_s_1;
+        const real uhs_rel_t_3 = uhs_c_1*uhs_rel_t + uhs_c_3*uhs_s_1;
+        const real axis_y_uhs_axes3_x = uhs_base_frame_xx*uhs_rel_t_2 +
+            uhs_base_frame_xy*uhs_rel_t_3 + uhs_base_frame_xz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_y = uhs_base_frame_yx*uhs_rel_t_2 +
+            uhs_base_frame_yy*uhs_rel_t_3 + uhs_base_frame_yz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_z = uhs_base_frame_zx*uhs_rel_t_2 +
+            uhs_base_frame_zy*uhs_rel_t_3 + uhs_base_frame_zz*uhs_e_1_in_axes3_y;
+        const real uhs_rel_in_axes3_x = uhs_S_ddot_x*(axis_y_uhs_axes3_y*axis_z_uhs_axes3_z -
+            axis_y_uhs_axes3_z*axis_z_uhs_axes3_y) +
+            uhs_S_ddot_y*(axis_y_uhs_axes3_z*axis_z_uhs_axes3_x -
+            axis_y_uhs_axes3_x*axis_z_uhs_axes3_z) +
+            uhs_S_ddot_z*(axis_y_uhs_axes3_x*axis_z_uhs_axes3_y -
+            axis_y_uhs_axes3_y*axis_z_uhs_axes3_x) - uhs_bias_in_axes3_x;
+        const real uhs_rel_in_axes3_y = axis_y_uhs_axes3_x*uhs_S_ddot_x +
+            axis_y_uhs_axes3_y*uhs_S_ddot_y + axis_y_uhs_axes3_z*uhs_S_ddot_z -
+            uhs_bias_in_axes3_y;
+        const real uhs_rel_in_axes3_z = axis_z_uhs_axes3_x*uhs_S_ddot_x +
+            axis_z_uhs_axes3_y*uhs_S_ddot_y + axis_z_uhs_axes3_z*uhs_S_ddot_z -
+            uhs_bias_in_axes3_z;
         /* (uhs-qdd_1) acceleration of joint 1 */
-        const real uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_z;
-        const real uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3);
-        const real uhs_qdd_2 = inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 -
-            uhs_c_3_t*uhs_rel_x);
+        const real uhs_qdd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y +
+            uhs_rel_in_axes3_x*uhs_s_3);
+        /* (uhs-qdd_2) acceleration of joint 2 */
+        const real uhs_qdd_2_t = inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y +
+            uhs_rel_in_axes3_y*uhs_s_3 - uhs_c_3*uhs_rel_in_axes3_x);
+        /* (uhs-qdd_3) acceleration of joint 3 */
+        const real uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z;
+        /* (uhs-qdd_1) acceleration of joint 1 */
         o[0*count + k] = uhs_qdd_1;
-        o[1*count + k] = -uhs_qdd_2;
+        /* (uhs-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = -uhs_qdd_2_t;
+        /* (uhs-qdd_3) acceleration of joint 3 */
         o[2*count + k] = uhs_qdd_3;
-        o[4*count + k] = uhs_qdd_1 + (uhs_qdd_2 + uhs_qdd_3);
+        o[4*count + k] = uhs_qdd_1 + (uhs_qdd_2_t + uhs_qdd_3);
         const real uhs_size_t = m->uhs_size_t[i];
         const real uhs_size = m->uhs_size[i];
         o[3*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
             UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) + UNLESS(magnitude(uhs_v_1_r0_y) >
-            TOLERANCE*uhs_size);
+            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) +
+            UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*uhs_size);
     }
 }
 
@@ -4800,27 +4974,27 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_S_x = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_S_y = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
+        const real uhs_S_z = t_z + uhs_q_z - uhs_base_point_z;
         /* (uhs-px_1) component along the reference direction */
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
@@ -4838,288 +5012,309 @@ INLINE void legs_legs_uhs(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (uhs-root_1) root, with the sign of the branch */
         const real uhs_branch_1 = m->uhs_branch_1[i];
         const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
+        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
+        const real uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
+        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
         /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
+        const real uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
+        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z;
         /* (uhs-x_3) from the origin of joint 3 to the connection point */
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
+        const real uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x;
         /* (uhs-q_3) displacement of joint 3 */
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t;
+        const real uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_x_3_in_axes2_x);
         /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
+        const real uhs_c_3 = sine(uhs_q_3_t);
         /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_t = uhs_c_2*uhs_s_3;
-        const real uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t;
-        const real uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_root_2 = 1/uhs_root_2;
-        const real uhs_axis_z_x = inv_uhs_root_2*uhs_S_x;
-        const real uhs_axis_z_y = inv_uhs_root_2*uhs_S_y;
-        const real uhs_axis_z_z = inv_uhs_root_2*uhs_S_z;
-        const real uhs_w_1_t = uhs_s_2*uhs_s_3;
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-        const real uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
-        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t;
-        const real axis_y_uhs_axes3_in_base_x = axis_y_uhs_axes3_r4_x*uhs_base_frame_xx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*uhs_v_1_t;
-        const real axis_y_uhs_axes3_in_base_y = axis_y_uhs_axes3_r4_x*uhs_base_frame_yx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*uhs_v_1_t;
-        const real axis_y_uhs_axes3_in_base_z = axis_y_uhs_axes3_r4_x*uhs_base_frame_zx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*uhs_v_1_t;
-        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*uhs_axis_z_z -
-            axis_y_uhs_axes3_in_base_z*uhs_axis_z_y;
-        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*uhs_axis_z_x -
-            axis_y_uhs_axes3_in_base_x*uhs_axis_z_z;
-        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*uhs_axis_z_y -
-            axis_y_uhs_axes3_in_base_y*uhs_axis_z_x;
-        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3;
-        const real uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2;
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_v_1_r0_y = 1/uhs_v_1_r0_y;
+        const real uhs_s_3 = cosine(uhs_q_3_t);
         /* (uhs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y;
+        const real uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y;
         const real omega_x = s[15*w + j];
-        const real uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z;
-        const real uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x;
+        const real uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z;
+        const real uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x;
         const real t_dot_x = s[12*w + j];
         const real uhs_S_dot_x = t_dot_x + uhs_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3;
-        const real uhs_S_dot_r0_x = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx
-            + uhs_S_dot_z*uhs_base_frame_zx;
-        const real uhs_S_dot_r0_y = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy
-            + uhs_S_dot_z*uhs_base_frame_zy;
-        const real uhs_S_dot_r0_z = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz
-            + uhs_S_dot_z*uhs_base_frame_zz;
-        const real uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1;
-        /* (uhs-qd_3) rate of joint 3 */
-        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 -
-            uhs_S_dot_r1_y*uhs_c_2);
-        const real uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1);
-        const real uhs_qd_2 = inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 -
-            uhs_qd_1*uhs_v_1_r0_x);
-        /* (uhs-omega_1) angular velocity of link 1 */
-        const real uhs_omega_1_t = uhs_qd_1*uhs_s_2;
-        const real uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1;
-        /* (uhs-omega_2) angular velocity of link 2 */
-        const real uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2;
-        const real uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3;
-        /* (uhs-omega_3) angular velocity of link 3 */
-        const real uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3;
-        /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3;
-        const real uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3;
-        /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2;
-        const real uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2;
-        const real uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y;
-        const real uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y;
-        /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t;
-        const real uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y;
-        /* (uhs-W_2) centripetal tensor of link 2 */
-        const real uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t;
-        const real uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2;
-        const real uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2;
-        const real uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2;
-        /* (uhs-W_3) centripetal tensor of link 3 */
-        const real uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x;
-        const real uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y;
-        const real uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z;
-        const real uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y;
-        const real uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z;
-        const real uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z;
-        const real uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2;
-        /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
-        const real uhs_bias_t = m->uhs_bias_t[i];
-        const real uhs_bias_t_2 = uhs_bias_t*uhs_qd_3;
-        const real uhs_bias_x = uhs_bias_t_2*uhs_omega_2_r1_y +
-            uhs_joint3_offset_x*(uhs_zeta_2_t_2 + uhs_omega_1_t*uhs_omega_2_r1_x) +
-            uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y);
-        const real uhs_bias_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
-            uhs_omega_1_t*uhs_omega_2_r1_y) + uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) -
-            uhs_bias_t_2*uhs_omega_2_r1_x;
-        const real uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x;
-        /* (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real uhs_g_r0_x = m->uhs_g_r0_x[i];
-        const real uhs_g_r0_y = m->uhs_g_r0_y[i];
-        const real uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x;
-        const real uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1;
-        const real uhs_g_r0_z = m->uhs_g_r0_z[i];
-        const real uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y;
-        const real uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2;
+        /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
+        const real uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3;
+        const real uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2;
+        const real uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2;
+        const real uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y;
+        const real uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x;
         /* (uhs-w_3) reciprocal vector 3 */
-        const real uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x;
-        const real uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y;
-        const real uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z;
+        const real inv_uhs_root_2 = 1/uhs_root_2;
+        const real axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x;
+        const real axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y;
+        const real axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z;
+        const real uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch;
+        const real uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch;
+        const real uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch;
+        /* (uhs-qd_1) rate of joint 1 */
+        const real inv_uhs_v_1_in_axes2_z = 1/uhs_v_1_in_axes2_z;
+        const real uhs_qd_1_t = uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
+            uhs_S_dot_z*uhs_base_frame_zx;
+        const real uhs_qd_1_t_2 = uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
+            uhs_S_dot_z*uhs_base_frame_zy;
+        const real uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1);
+        /* (uhs-qd_2) rate of joint 2 */
+        const real uhs_qd_2_t = uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
+            uhs_S_dot_z*uhs_base_frame_zz;
+        const real uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2;
+        const real uhs_qd_2 = inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 -
+            uhs_qd_1*uhs_v_1_in_axes2_y);
+        /* (uhs-qd_3) rate of joint 3 */
+        const real uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2);
+        /* (uhs-omega_1) angular velocity of link 1 */
+        const real uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2;
+        const real uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1;
+        /* (uhs-omega_2) angular velocity of link 2 */
+        const real uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3;
+        const real uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3;
+        /* (uhs-W_2) centripetal tensor of link 2 */
+        const real uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2;
+        const real uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2;
+        const real uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y;
+        const real uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x;
+        const real uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y;
+        const real uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y;
+        const real uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2;
+        /* (uhs-omega_3) angular velocity of link 3 */
+        const real uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3;
+        /* (uhs-W_3) centripetal tensor of link 3 */
+        const real uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z;
+        const real uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z;
         /* (uhs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y;
+        const real uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z;
+        const real uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x;
+        const real uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x;
         /* (uhs-S_ddot) acceleration of the connection point */
+        const real uhs_S_ddot_t = uhs_s_2*uhs_s_3;
+        const real uhs_S_ddot_t_2 = uhs_c_1*uhs_c_3 - uhs_S_ddot_t*uhs_s_1;
+        const real uhs_S_ddot_t_3 = uhs_S_ddot_t*uhs_c_1 + uhs_c_3*uhs_s_1;
+        const real axis_y_uhs_axes3_x = uhs_S_ddot_t_2*uhs_base_frame_xx +
+            uhs_S_ddot_t_3*uhs_base_frame_xy + uhs_base_frame_xz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_y = uhs_S_ddot_t_2*uhs_base_frame_yx +
+            uhs_S_ddot_t_3*uhs_base_frame_yy + uhs_base_frame_yz*uhs_e_1_in_axes3_y;
+        const real axis_y_uhs_axes3_z = uhs_S_ddot_t_2*uhs_base_frame_zx +
+            uhs_S_ddot_t_3*uhs_base_frame_zy + uhs_base_frame_zz*uhs_e_1_in_axes3_y;
+        const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_y*axis_z_uhs_axes3_z -
+            axis_y_uhs_axes3_z*axis_z_uhs_axes3_y;
+        const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_z*axis_z_uhs_axes3_x -
+            axis_y_uhs_axes3_x*axis_z_uhs_axes3_z;
+        const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_x*axis_z_uhs_axes3_y -
+            axis_y_uhs_axes3_y*axis_z_uhs_axes3_x;
         const real uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2;
         const real uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3;
         const real uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t;
-        const real uhs_S_ddot_tip_x = axis_x_uhs_axes3_x*uhs_S_ddot_x +
+        const real uhs_S_ddot_in_axes3_x = axis_x_uhs_axes3_x*uhs_S_ddot_x +
             axis_x_uhs_axes3_y*uhs_S_ddot_y + axis_x_uhs_axes3_z*uhs_S_ddot_z;
-        const real uhs_S_ddot_tip_y = axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x +
-            axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y + axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z;
-        const real uhs_S_ddot_tip_z = uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y +
-            uhs_S_ddot_z*uhs_axis_z_z;
+        const real uhs_S_ddot_in_axes3_y = axis_y_uhs_axes3_x*uhs_S_ddot_x +
+            axis_y_uhs_axes3_y*uhs_S_ddot_y + axis_y_uhs_axes3_z*uhs_S_ddot_z;
+        const real uhs_S_ddot_in_axes3_z = axis_z_uhs_axes3_x*uhs_S_ddot_x +
+            axis_z_uhs_axes3_y*uhs_S_ddot_y + axis_z_uhs_axes3_z*uhs_S_ddot_z;
+        /* (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3;
+        const real uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3;
+        /* (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3;
+        const real uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3;
+        /* (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t;
+        const real uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y;
+        /* (uhs-bias) acceleration of the connection point at zero joint accelerations */
+        const real uhs_bias_t = m->uhs_bias_t[i];
+        const real uhs_bias_t_2 = uhs_bias_t*uhs_qd_3;
+        const real uhs_bias_in_axes3_x = uhs_bias_t_2*uhs_omega_2_in_axes3_y +
+            uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y);
+        const real uhs_bias_in_axes3_y = uhs_joint3_offset_x*(uhs_zeta_2_t +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
+            uhs_bias_t_2*uhs_omega_2_in_axes3_x;
+        const real uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x -
+            uhs_W_2_t_3*uhs_x_3_in_axes2_x;
         /* (uhs-rel) acceleration of the connection point left to the joint accelerations */
-        const real uhs_rel_x = uhs_S_ddot_tip_x - uhs_bias_x;
-        const real uhs_rel_y = uhs_S_ddot_tip_y - uhs_bias_y;
-        const real uhs_rel_z = uhs_S_ddot_tip_z - uhs_bias_z;
+        const real uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x;
+        const real uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y;
+        const real uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z;
         /* (uhs-qdd_1) acceleration of joint 1 */
-        const real uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3);
-        const real uhs_qdd_2 = inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 -
-            uhs_c_3_t*uhs_rel_x);
+        const real uhs_qdd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y +
+            uhs_rel_in_axes3_x*uhs_s_3);
+        /* (uhs-qdd_2) acceleration of joint 2 */
+        const real uhs_qdd_2_t = inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y +
+            uhs_rel_in_axes3_y*uhs_s_3 - uhs_c_3*uhs_rel_in_axes3_x);
+        /* (uhs-alpha_1) angular acceleration of link 1 */
+        const real uhs_alpha_1_in_axes2_x = uhs_qdd_1*uhs_s_2;
+        const real uhs_alpha_1_in_axes2_y = uhs_c_2*uhs_qdd_1;
+        /* (uhs-alpha_2) angular acceleration of link 2 */
+        const real uhs_alpha_2_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_in_axes2_x;
+        const real uhs_alpha_2_in_axes2_y = uhs_alpha_1_in_axes2_y - uhs_W_2_in_axes2_xz;
+        /* (uhs-B_2) acceleration tensor of link 2 */
+        const real uhs_B_2_in_axes2_xy = uhs_W_2_in_axes2_xy + uhs_qdd_2_t;
+        const real uhs_B_2_in_axes2_yx = uhs_W_2_in_axes2_xy - uhs_qdd_2_t;
+        const real uhs_B_2_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_in_axes2_y;
+        const real uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x;
+        /* (uhs-alpha_3) angular acceleration of link 3 */
+        const real uhs_alpha_3_in_axes3_x = uhs_zeta_3_in_axes3_x + uhs_alpha_2_in_axes2_y*uhs_c_3
+            - uhs_qdd_2_t*uhs_s_3;
+        const real uhs_alpha_3_in_axes3_y = uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_s_3
+            - uhs_c_3*uhs_qdd_2_t;
+        const real uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x +
+            inv_uhs_joint3_pitch*uhs_rel_in_axes3_z;
+        /* (uhs-B_3) acceleration tensor of link 3 */
+        const real uhs_B_3_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z;
+        const real uhs_B_3_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_in_axes3_y;
+        const real uhs_B_3_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_in_axes3_z;
+        const real uhs_B_3_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_in_axes3_x;
+        const real uhs_B_3_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y;
+        const real uhs_B_3_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x;
         /* (uhs-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real uhs_acc_3_x = uhs_S_ddot_tip_x - axis_x_uhs_axes3_x*gravity_x -
+        const real uhs_acc_3_in_axes3_x = uhs_S_ddot_in_axes3_x - axis_x_uhs_axes3_x*gravity_x -
             axis_x_uhs_axes3_y*gravity_y - axis_x_uhs_axes3_z*gravity_z;
-        const real uhs_acc_3_y = uhs_S_ddot_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
-            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z;
-        const real uhs_acc_3_z = uhs_S_ddot_tip_z - gravity_x*uhs_axis_z_x -
-            gravity_y*uhs_axis_z_y - gravity_z*uhs_axis_z_z;
-        /* (uhs-alpha_1) angular acceleration of link 1 */
-        const real uhs_alpha_1_t = uhs_qdd_1*uhs_s_2;
-        const real uhs_alpha_1_t_2 = uhs_c_2*uhs_qdd_1;
-        /* (uhs-alpha_2) angular acceleration of link 2 */
-        const real uhs_alpha_2_x = uhs_alpha_1_t - uhs_zeta_2_x;
-        const real uhs_alpha_2_y = -uhs_alpha_1_t_2 - uhs_zeta_2_y;
-        /* (uhs-alpha_3) angular acceleration of link 3 */
-        const real uhs_alpha_3_x = uhs_zeta_3_x + uhs_alpha_2_y*uhs_c_3_t - uhs_qdd_2*uhs_s_3;
-        const real uhs_alpha_3_y = -uhs_zeta_3_y - uhs_alpha_2_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2;
-        const real uhs_alpha_3_z = uhs_alpha_2_x + inv_uhs_joint3_pitch*uhs_rel_z;
-        /* (uhs-B_3) acceleration tensor of link 3 */
-        const real uhs_B_3_xy = uhs_W_3_xy - uhs_alpha_3_z;
-        const real uhs_B_3_xz = uhs_W_3_xz + uhs_alpha_3_y;
-        const real uhs_B_3_yx = uhs_W_3_xy + uhs_alpha_3_z;
-        const real uhs_B_3_yz = uhs_W_3_yz - uhs_alpha_3_x;
-        const real uhs_B_3_zx = uhs_W_3_xz - uhs_alpha_3_y;
-        const real uhs_B_3_zy = uhs_W_3_yz + uhs_alpha_3_x;
+        const real uhs_acc_3_in_axes3_y = uhs_S_ddot_in_axes3_y - axis_y_uhs_axes3_x*gravity_x -
+            axis_y_uhs_axes3_y*gravity_y - axis_y_uhs_axes3_z*gravity_z;
+        const real uhs_acc_3_in_axes3_z = uhs_S_ddot_in_axes3_z - axis_z_uhs_axes3_x*gravity_x -
+            axis_z_uhs_axes3_y*gravity_y - axis_z_uhs_axes3_z*gravity_z;
         /* (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real uhs_J_3_xy = m->uhs_J_3_xy[i];
-        const real uhs_J_3_xz = m->uhs_J_3_xz[i];
-        const real uhs_J_3_yz = m->uhs_J_3_yz[i];
-        const real uhs_Sigma_3_yy = m->uhs_Sigma_3_yy[i];
-        const real uhs_Sigma_3_zz = m->uhs_Sigma_3_zz[i];
-        const real uhs_h_3_x = m->uhs_h_3_x[i];
-        const real uhs_h_3_z = m->uhs_h_3_z[i];
-        const real uhs_mu_3_x = uhs_B_3_yx*uhs_J_3_xy + uhs_B_3_zy*uhs_Sigma_3_yy +
-            uhs_J_3_xz*(uhs_W_3_t_2 - uhs_W_3_t_3) + uhs_acc_3_z*uhs_h_3_z -
-            uhs_B_3_yz*uhs_Sigma_3_zz - uhs_B_3_zx*uhs_J_3_yz - uhs_acc_3_y*uhs_h_3_x;
-        const real uhs_Sigma_3_xx = m->uhs_Sigma_3_xx[i];
-        const real uhs_h_3_y = m->uhs_h_3_y[i];
-        const real uhs_mu_3_y = uhs_B_3_xz*uhs_Sigma_3_zz + uhs_B_3_zy*uhs_J_3_yz +
-            uhs_acc_3_x*uhs_h_3_x - uhs_B_3_xy*uhs_J_3_xz - uhs_B_3_zx*uhs_Sigma_3_xx -
-            uhs_J_3_xy*(uhs_W_3_t - uhs_W_3_t_3) - uhs_acc_3_z*uhs_h_3_y;
-        const real uhs_mu_3_z = uhs_B_3_xz*uhs_J_3_xz + uhs_B_3_yx*uhs_Sigma_3_xx +
-            uhs_J_3_yz*(uhs_W_3_t - uhs_W_3_t_2) + uhs_acc_3_y*uhs_h_3_y -
-            uhs_B_3_xy*uhs_Sigma_3_yy - uhs_B_3_yz*uhs_J_3_xy - uhs_acc_3_x*uhs_h_3_z;
-        /* (uhs-B_2) acceleration tensor of link 2 */
-        const real uhs_B_2_xy = uhs_qdd_2 - uhs_W_2_xy;
-        const real uhs_B_2_yx = -uhs_W_2_xy - uhs_qdd_2;
-        const real uhs_B_2_zx = uhs_zeta_2_y - uhs_alpha_2_y;
-        const real uhs_B_2_zy = uhs_alpha_2_x - uhs_zeta_2_x;
+        const real uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z;
+        const real uhs_J_3_in_spec3_xy = m->uhs_J_3_in_spec3_xy[i];
+        const real uhs_J_3_in_spec3_xz = m->uhs_J_3_in_spec3_xz[i];
+        const real uhs_J_3_in_spec3_yz = m->uhs_J_3_in_spec3_yz[i];
+        const real uhs_Sigma_3_in_axes3_yy = m->uhs_Sigma_3_in_axes3_yy[i];
+        const real uhs_Sigma_3_in_axes3_zz = m->uhs_Sigma_3_in_axes3_zz[i];
+        const real uhs_h_3_in_spec3_x = m->uhs_h_3_in_spec3_x[i];
+        const real uhs_h_3_in_spec3_z = m->uhs_h_3_in_spec3_z[i];
+        const real uhs_mu_3_in_axes3_x = uhs_B_3_in_axes3_yx*uhs_J_3_in_spec3_xy +
+            uhs_B_3_in_axes3_zy*uhs_Sigma_3_in_axes3_yy + uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 -
+            uhs_mu_3_t) + uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_z -
+            uhs_B_3_in_axes3_yz*uhs_Sigma_3_in_axes3_zz - uhs_B_3_in_axes3_zx*uhs_J_3_in_spec3_yz
+            - uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_x;
+        const real uhs_Sigma_3_in_axes3_xx = m->uhs_Sigma_3_in_axes3_xx[i];
+        const real uhs_h_3_in_spec3_y = m->uhs_h_3_in_spec3_y[i];
+        const real uhs_mu_3_in_axes3_y = uhs_B_3_in_axes3_xz*uhs_Sigma_3_in_axes3_zz +
+            uhs_B_3_in_axes3_zy*uhs_J_3_in_spec3_yz + uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_x -
+            uhs_B_3_in_axes3_xy*uhs_J_3_in_spec3_xz - uhs_B_3_in_axes3_zx*uhs_Sigma_3_in_axes3_xx
+            - uhs_J_3_in_spec3_xy*(uhs_W_2_t - uhs_mu_3_t) -
+            uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_y;
+        const real uhs_mu_3_in_axes3_z = uhs_B_3_in_axes3_xz*uhs_J_3_in_spec3_xz +
+            uhs_B_3_in_axes3_yx*uhs_Sigma_3_in_axes3_xx + uhs_J_3_in_spec3_yz*(uhs_W_2_t -
+            uhs_W_2_t_2) + uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_y -
+            uhs_B_3_in_axes3_xy*uhs_Sigma_3_in_axes3_yy - uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy
+            - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z;
         /* (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real uhs_J_2_xy = m->uhs_J_2_xy[i];
-        const real uhs_J_2_xz = m->uhs_J_2_xz[i];
-        const real uhs_J_2_yz = m->uhs_J_2_yz[i];
-        const real uhs_Sigma_2_yy = m->uhs_Sigma_2_yy[i];
-        const real uhs_Sigma_2_zz = m->uhs_Sigma_2_zz[i];
-        const real uhs_h_2_y = m->uhs_h_2_y[i];
-        const real uhs_h_2_z = m->uhs_h_2_z[i];
-        const real uhs_mu_2_x = uhs_B_2_yx*uhs_J_2_xy + uhs_B_2_zx*uhs_J_2_xz +
-            uhs_B_2_zy*uhs_Sigma_2_yy + uhs_Sigma_2_zz*uhs_alpha_1_t + uhs_g_r1_x*uhs_h_2_z +
-            uhs_g_r3_y*uhs_h_2_y - uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3);
-        const real uhs_Sigma_2_xx = m->uhs_Sigma_2_xx[i];
-        const real uhs_h_2_x = m->uhs_h_2_x[i];
-        const real uhs_mu_2_y = uhs_B_2_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x -
-            uhs_B_2_zx*uhs_Sigma_2_xx - uhs_B_2_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t -
-            uhs_W_2_t_3) - uhs_Sigma_2_zz*uhs_alpha_1_t_2 - uhs_g_r3_x*uhs_h_2_y;
-        const real uhs_mu_2_z = uhs_B_2_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_t +
-            uhs_J_2_yz*uhs_alpha_1_t_2 - uhs_B_2_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t -
-            uhs_W_2_t_2) - uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x;
+        const real uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x;
+        const real uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y;
+        const real uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2;
+        const real uhs_mu_2_t = m->uhs_mu_2_t[i];
+        const real uhs_mu_2_t_2 = m->uhs_mu_2_t_2[i];
+        const real uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1;
+        const real uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1;
+        const real uhs_mu_2_t_3 = m->uhs_mu_2_t_3[i];
+        const real uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_mu_2_t_3*uhs_s_2;
+        const real uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_t_7*uhs_s_2;
+        const real uhs_J_2_in_spec2_xy = m->uhs_J_2_in_spec2_xy[i];
+        const real uhs_J_2_in_spec2_xz = m->uhs_J_2_in_spec2_xz[i];
+        const real uhs_J_2_in_spec2_yz = m->uhs_J_2_in_spec2_yz[i];
+        const real uhs_Sigma_2_in_axes2_yy = m->uhs_Sigma_2_in_axes2_yy[i];
+        const real uhs_Sigma_2_in_axes2_zz = m->uhs_Sigma_2_in_axes2_zz[i];
+        const real uhs_h_2_in_spec2_y = m->uhs_h_2_in_spec2_y[i];
+        const real uhs_h_2_in_spec2_z = m->uhs_h_2_in_spec2_z[i];
+        const real uhs_mu_2_in_axes2_x = uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy +
+            uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz + uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy
+            + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y
+            + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 -
+            uhs_mu_2_t_6);
+        const real uhs_Sigma_2_in_axes2_xx = m->uhs_Sigma_2_in_axes2_xx[i];
+        const real uhs_h_2_in_spec2_x = m->uhs_h_2_in_spec2_x[i];
+        const real uhs_mu_2_in_axes2_y = uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_x -
+            uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx - uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz
+            - uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 - uhs_mu_2_t_6) -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_y;
+        const real uhs_mu_2_in_axes2_z = uhs_B_2_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_in_axes2_x -
+            uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 -
+            uhs_mu_2_t_5) - uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x;
         /* (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real uhs_N_2_x = uhs_mu_2_x + uhs_mu_3_z;
-        const real uhs_N_2_y = uhs_mu_2_y + uhs_c_3_t*uhs_mu_3_x - uhs_mu_3_y*uhs_s_3;
-        const real uhs_N_2_z = uhs_mu_2_z + uhs_c_3_t*uhs_mu_3_y + uhs_mu_3_x*uhs_s_3;
-        /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real uhs_G_t = inv_uhs_root_2*uhs_N_2_z;
-        const real uhs_G_t_2 = inv_uhs_v_1_r0_y*(uhs_G_t*uhs_v_1_r0_x + uhs_N_2_y*uhs_c_2 -
-            uhs_N_2_x*uhs_s_2);
+        const real uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z;
+        const real uhs_N_2_in_axes2_y = uhs_mu_2_in_axes2_y + uhs_c_3*uhs_mu_3_in_axes3_x -
+            uhs_mu_3_in_axes3_y*uhs_s_3;
+        const real uhs_N_2_in_axes2_z = uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_y +
+            uhs_mu_3_in_axes3_x*uhs_s_3;
         /* (uhs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real uhs_c_x = uhs_G_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) -
-            uhs_B_3_xy*uhs_h_3_z - uhs_B_3_xz*uhs_h_3_x - uhs_G_t*uhs_c_3_t;
-        const real uhs_c_y = uhs_G_t*uhs_s_3 + uhs_G_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t +
-            uhs_W_3_t_3) - uhs_B_3_yx*uhs_h_3_y - uhs_B_3_yz*uhs_h_3_x;
-        const real uhs_c_z = uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_z -
-            uhs_B_3_zx*uhs_h_3_y - uhs_B_3_zy*uhs_h_3_z;
+        const real uhs_c_t = inv_uhs_root_2*uhs_N_2_in_axes2_z;
+        const real uhs_c_t_2 = inv_uhs_v_1_in_axes2_z*(uhs_c_t*uhs_v_1_in_axes2_y -
+            uhs_N_2_in_axes2_x*uhs_s_2 - uhs_N_2_in_axes2_y*uhs_c_2);
+        const real uhs_c_in_axes3_x = uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 +
+            uhs_mu_3_t) - uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z -
+            uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x - uhs_c_3*uhs_c_t;
+        const real uhs_c_in_axes3_y = uhs_c_3*uhs_c_t_2 + uhs_c_t*uhs_s_3 +
+            uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) - uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y -
+            uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x;
+        const real uhs_c_in_axes3_z = uhs_W_2_t_3*uhs_h_3_in_spec3_x -
+            inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z - uhs_B_3_in_axes3_zx*uhs_h_3_in_spec3_y -
+            uhs_B_3_in_axes3_zy*uhs_h_3_in_spec3_z;
         /* (uhs-c_true) leg force on the platform without actuation, the last link's mass included */
         const real uhs_link3_mass = m->uhs_link3_mass[i];
-        const real uhs_c_true_x = uhs_c_x - uhs_acc_3_x*uhs_link3_mass;
-        const real uhs_c_true_y = uhs_c_y - uhs_acc_3_y*uhs_link3_mass;
-        const real uhs_c_true_z = uhs_c_z - uhs_acc_3_z*uhs_link3_mass;
-        const real uhs_c_true_in_base_x = axis_x_uhs_axes3_x*uhs_c_true_x +
-            axis_y_uhs_axes3_in_base_x*uhs_c_true_y + uhs_axis_z_x*uhs_c_true_z;
-        const real uhs_c_true_in_base_y = axis_x_uhs_axes3_y*uhs_c_true_x +
-            axis_y_uhs_axes3_in_base_y*uhs_c_true_y + uhs_axis_z_y*uhs_c_true_z;
-        const real uhs_c_true_in_base_z = axis_x_uhs_axes3_z*uhs_c_true_x +
-            axis_y_uhs_axes3_in_base_z*uhs_c_true_y + uhs_axis_z_z*uhs_c_true_z;
-        o[0*count + k] = uhs_c_true_in_base_x;
-        o[1*count + k] = uhs_c_true_in_base_y;
-        o[2*count + k] = uhs_c_true_in_base_z;
-        o[3*count + k] = uhs_w_3_t;
-        o[4*count + k] = uhs_w_3_t_2;
-        o[5*count + k] = uhs_w_3_t_3;
+        const real uhs_c_true_in_axes3_x = uhs_c_in_axes3_x - uhs_acc_3_in_axes3_x*uhs_link3_mass;
+        const real uhs_c_true_in_axes3_y = uhs_c_in_axes3_y - uhs_acc_3_in_axes3_y*uhs_link3_mass;
+        const real uhs_c_true_in_axes3_z = uhs_c_in_axes3_z - uhs_acc_3_in_axes3_z*uhs_link3_mass;
+        const real uhs_c_true_x = axis_x_uhs_axes3_x*uhs_c_true_in_axes3_x +
+            axis_y_uhs_axes3_x*uhs_c_true_in_axes3_y + axis_z_uhs_axes3_x*uhs_c_true_in_axes3_z;
+        const real uhs_c_true_y = axis_x_uhs_axes3_y*uhs_c_true_in_axes3_x +
+            axis_y_uhs_axes3_y*uhs_c_true_in_axes3_y + axis_z_uhs_axes3_y*uhs_c_true_in_axes3_z;
+        const real uhs_c_true_z = axis_x_uhs_axes3_z*uhs_c_true_in_axes3_x +
+            axis_y_uhs_axes3_z*uhs_c_true_in_axes3_y + axis_z_uhs_axes3_z*uhs_c_true_in_axes3_z;
+        /* (uhs-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = uhs_c_true_x;
+        o[1*count + k] = uhs_c_true_y;
+        o[2*count + k] = uhs_c_true_z;
+        /* (uhs-w_3) reciprocal vector 3 */
+        o[3*count + k] = uhs_w_3_x;
+        o[4*count + k] = uhs_w_3_y;
+        o[5*count + k] = uhs_w_3_z;
         const real uhs_size_t = m->uhs_size_t[i];
         const real uhs_size = m->uhs_size[i];
         o[6*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
             UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) + UNLESS(magnitude(uhs_v_1_r0_y) >
-            TOLERANCE*uhs_size);
+            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) +
+            UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*uhs_size);
     }
 }
 
@@ -5190,13 +5385,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -5262,63 +5459,66 @@ INLINE void potential_legs_uhs(const prepared *m, size_t w, size_t leg, size_t l
         /* (uhs-root_1) root, with the sign of the branch */
         const real uhs_branch_1 = m->uhs_branch_1[i];
         const real uhs_root_1 = uhs_branch_1*root(uhs_rho2_1);
+        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
+        const real uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
+        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
         /* (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
+        const real uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
+        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z;
         /* (uhs-x_3) from the origin of joint 3 to the connection point */
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
+        const real uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x;
         /* (uhs-q_3) displacement of joint 3 */
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_uhs_rho2_2 = 1/uhs_rho2_2;
-        const real uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2;
-        /* (uhs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t;
+        const real uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_x_3_in_axes2_x);
         /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
+        const real uhs_c_3 = sine(uhs_q_3_t);
         /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_uhs_rho2_1 = 1/uhs_rho2_1;
-        const real uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1;
-        /* (uhs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1;
-        /* (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real uhs_g_r0_x = m->uhs_g_r0_x[i];
-        const real uhs_g_r0_y = m->uhs_g_r0_y[i];
-        const real uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1;
+        const real uhs_s_3 = cosine(uhs_q_3_t);
         /* (potential) potential energy */
-        const real uhs_b_r0_x = m->uhs_b_r0_x[i];
-        const real uhs_b_r0_y = m->uhs_b_r0_y[i];
-        const real uhs_b_r1_y = -uhs_b_r0_x*uhs_s_1 - uhs_b_r0_y*uhs_c_1;
-        const real uhs_b_r0_z = m->uhs_b_r0_z[i];
-        const real uhs_g_r0_z = m->uhs_g_r0_z[i];
-        const real uhs_h_2_x = m->uhs_h_2_x[i];
-        const real uhs_h_2_y = m->uhs_h_2_y[i];
-        const real uhs_h_2_z = m->uhs_h_2_z[i];
-        const real uhs_h_3_x = m->uhs_h_3_x[i];
-        const real uhs_h_3_y = m->uhs_h_3_y[i];
-        const real uhs_h_3_z = m->uhs_h_3_z[i];
+        const real uhs_mu_2_t = m->uhs_mu_2_t[i];
+        const real uhs_mu_2_t_2 = m->uhs_mu_2_t_2[i];
+        const real uhs_potential_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1;
+        const real uhs_potential_t = m->uhs_potential_t[i];
+        const real uhs_potential_t_2 = m->uhs_potential_t_2[i];
+        const real uhs_potential_t_5 = uhs_c_1*uhs_potential_t_2 - uhs_potential_t*uhs_s_1;
+        const real uhs_h_2_in_spec2_x = m->uhs_h_2_in_spec2_x[i];
+        const real uhs_h_2_in_spec2_y = m->uhs_h_2_in_spec2_y[i];
+        const real uhs_h_2_in_spec2_z = m->uhs_h_2_in_spec2_z[i];
+        const real uhs_h_3_in_spec3_x = m->uhs_h_3_in_spec3_x[i];
+        const real uhs_h_3_in_spec3_y = m->uhs_h_3_in_spec3_y[i];
+        const real uhs_h_3_in_spec3_z = m->uhs_h_3_in_spec3_z[i];
         const real uhs_link2_mass = m->uhs_link2_mass[i];
-        const real uhs_potential_t = (uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x)*(uhs_h_2_y +
-            uhs_c_3_t*uhs_h_3_z + uhs_h_3_y*uhs_s_3 + uhs_link2_mass*(uhs_b_r0_y*uhs_s_1 -
-            uhs_b_r0_x*uhs_c_1)) + (-uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2)*(uhs_c_3_t*uhs_h_3_y
-            + uhs_link2_mass*(-uhs_b_r0_z*uhs_c_2 - uhs_b_r1_y*uhs_s_2) - uhs_h_2_z -
-            uhs_h_3_z*uhs_s_3) + (uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y)*(uhs_h_2_x + uhs_h_3_x
-            + uhs_link2_mass*(uhs_b_r0_z*uhs_s_2 - uhs_b_r1_y*uhs_c_2));
-        terms[0*count + k] = add ? terms[0*count + k] + uhs_potential_t : uhs_potential_t;  /* total_uhs */
+        const real uhs_mu_2_t_3 = m->uhs_mu_2_t_3[i];
+        const real uhs_potential_t_3 = m->uhs_potential_t_3[i];
+        const real uhs_potential_t_6 = (uhs_c_1*uhs_mu_2_t +
+            uhs_mu_2_t_2*uhs_s_1)*(uhs_h_2_in_spec2_y + uhs_c_3*uhs_h_3_in_spec3_z +
+            uhs_h_3_in_spec3_y*uhs_s_3 + uhs_link2_mass*(uhs_c_1*uhs_potential_t +
+            uhs_potential_t_2*uhs_s_1)) + (uhs_c_2*uhs_mu_2_t_3 -
+            uhs_potential_t_4*uhs_s_2)*(uhs_c_3*uhs_h_3_in_spec3_y +
+            uhs_link2_mass*(uhs_c_2*uhs_potential_t_3 - uhs_potential_t_5*uhs_s_2) -
+            uhs_h_2_in_spec2_z - uhs_h_3_in_spec3_z*uhs_s_3) + (uhs_c_2*uhs_potential_t_4 +
+            uhs_mu_2_t_3*uhs_s_2)*(uhs_h_2_in_spec2_x + uhs_h_3_in_spec3_x +
+            uhs_link2_mass*(uhs_c_2*uhs_potential_t_5 + uhs_potential_t_3*uhs_s_2));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + uhs_potential_t_6 : uhs_potential_t_6;  /* potential_t_2 */
         const real uhs_size_t = m->uhs_size_t[i];
         o[0*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
             UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t);
@@ -5337,8 +5537,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_uhs = sums[0*w + k];
-        const real potential_ = -potential_t - total_uhs;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5408,6 +5609,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -5428,27 +5630,27 @@ INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t leg, size_t l
         const real uhs_platform_point_x = m->uhs_platform_point_x[i];
         const real uhs_platform_point_y = m->uhs_platform_point_y[i];
         const real uhs_platform_point_z = m->uhs_platform_point_z[i];
-        const real uhs_q_in_base_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
+        const real uhs_q_x = R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y +
             R_xz*uhs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real uhs_q_in_base_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
+        const real uhs_q_y = R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y +
             R_yz*uhs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real uhs_q_in_base_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
+        const real uhs_q_z = R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y +
             R_zz*uhs_platform_point_z;
         const real t_x = s[0*w + j];
         const real uhs_base_point_x = m->uhs_base_point_x[i];
-        const real uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x;
+        const real uhs_S_x = t_x + uhs_q_x - uhs_base_point_x;
         const real t_y = s[1*w + j];
         const real uhs_base_point_y = m->uhs_base_point_y[i];
-        const real uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y;
+        const real uhs_S_y = t_y + uhs_q_y - uhs_base_point_y;
         const real t_z = s[2*w + j];
         const real uhs_base_point_z = m->uhs_base_point_z[i];
-        const real uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z;
+        const real uhs_S_z = t_z + uhs_q_z - uhs_base_point_z;
         /* (uhs-px_1) component along the reference direction */
         const real uhs_base_frame_xx = m->uhs_base_frame_xx[i];
         const real uhs_base_frame_yx = m->uhs_base_frame_yx[i];
@@ -5467,79 +5669,81 @@ INLINE void condition_legs_uhs(const prepared *m, size_t w, size_t leg, size_t l
         const real uhs_base_frame_xz = m->uhs_base_frame_xz[i];
         const real uhs_base_frame_yz = m->uhs_base_frame_yz[i];
         const real uhs_base_frame_zz = m->uhs_base_frame_zz[i];
-        const real uhs_xi_1_t = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
+        const real uhs_xi_1_in_axes1_z = uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz +
             uhs_S_z*uhs_base_frame_zz;
         /* (uhs-rho2_2) squared amplitude */
-        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t;
+        const real uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z;
         /* (uhs-root_2) root, with the sign of the branch */
         const real uhs_branch_2 = m->uhs_branch_2[i];
         const real uhs_root_2 = uhs_branch_2*root(uhs_rho2_2);
+        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real uhs_branch_1 = m->uhs_branch_1[i];
+        const real uhs_c_2 = -uhs_branch_1*root(uhs_rho2_1)*uhs_root_2/uhs_rho2_2;
         /* (uhs-x_3) from the origin of joint 3 to the connection point */
         const real uhs_joint3_offset_x = m->uhs_joint3_offset_x[i];
-        const real uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x;
+        const real uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x;
         /* (uhs-q_3) displacement of joint 3 */
         const real inv_uhs_joint3_pitch = m->inv_uhs_joint3_pitch[i];
         const real uhs_platform_joint_offset_x = m->uhs_platform_joint_offset_x[i];
-        const real uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x);
-        /* (uhs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real uhs_branch_1 = m->uhs_branch_1[i];
-        const real uhs_c_2 = uhs_branch_1*root(uhs_rho2_1)*uhs_root_2/uhs_rho2_2;
+        const real uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x -
+            uhs_x_3_in_axes2_x);
         /* (uhs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real uhs_c_3_t = sine(uhs_q_3);
+        const real uhs_c_3 = sine(uhs_q_3_t);
         /* (uhs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real uhs_s_3 = cosine(uhs_q_3);
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real inv_uhs_root_2 = 1/uhs_root_2;
+        const real uhs_s_3 = cosine(uhs_q_3_t);
         /* (uhs-v_1) velocity of the connection point per rate of joint 1 */
-        const real uhs_v_1_r0_y = uhs_c_2*uhs_c_3_t*uhs_c_3_t*uhs_root_2 +
+        const real uhs_v_1_in_axes2_z = -uhs_c_2*uhs_c_3*uhs_c_3*uhs_root_2 -
             uhs_c_2*uhs_root_2*uhs_s_3*uhs_s_3;
         /* (uhs-w_3) reciprocal vector 3 */
-        const real uhs_w_3_t = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x;
-        const real uhs_w_3_t_2 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y;
-        const real uhs_w_3_t_3 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z;
-        /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
-        const real uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2;
-        const real uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3;
-        const real uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real uhs_spread_t = b_c_x - uhs_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real uhs_spread_t_2 = b_c_y - uhs_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real uhs_spread_t_3 = b_c_z - uhs_platform_point_z;
-        const real uhs_spread_t_4 = uhs_spread_t*uhs_spread_t + uhs_spread_t_2*uhs_spread_t_2 +
-            uhs_spread_t_3*uhs_spread_t_3;
-        /* (uhs-rho2_1) squared amplitude */
-        const real uhs_pivot_size = magnitude(uhs_rho2_1);
-        /* (uhs-rho2_2) squared amplitude */
-        const real uhs_pivot_size_2 = magnitude(uhs_rho2_2);
-        /* (uhs-w_1) reciprocal vector 1 */
-        const real uhs_pivot_size_3 = magnitude(uhs_root_2);
-        const real uhs_pivot_size_4 = magnitude(uhs_v_1_r0_y);
+        const real inv_uhs_root_2 = 1/uhs_root_2;
+        const real uhs_w_3_x = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x;
+        const real uhs_w_3_y = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y;
+        const real uhs_w_3_z = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z;
         /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real uhs_pivot_size = magnitude(uhs_rho2_1);
+        const real uhs_pivot_size_2 = magnitude(uhs_rho2_2);
+        const real uhs_pivot_size_3 = magnitude(uhs_root_2);
+        const real uhs_pivot_size_4 = magnitude(uhs_v_1_in_axes2_z);
         const real inv_uhs_size = m->inv_uhs_size[i];
-        const real inv_uhs_size_t_3 = m->inv_uhs_size_t_3[i];
+        const real inv_uhs_size_t = m->inv_uhs_size_t[i];
         const real uhs_least_pivots = lesser(lesser(lesser(inv_uhs_size*uhs_pivot_size_3,
-            inv_uhs_size*uhs_pivot_size_4), root(inv_uhs_size_t_3*uhs_pivot_size)),
-            root(inv_uhs_size_t_3*uhs_pivot_size_2));
-        terms[0*count + k] = add ? terms[0*count + k] + uhs_spread_t_4 : uhs_spread_t_4;  /* total_uhs */
-        o[0*count + k] = uhs_w_3_t;
-        o[1*count + k] = uhs_w_3_t_2;
-        o[2*count + k] = uhs_w_3_t_3;
+            inv_uhs_size*uhs_pivot_size_4), root(inv_uhs_size_t*uhs_pivot_size)),
+            root(inv_uhs_size_t*uhs_pivot_size_2));
+        /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
+        const real uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y;
+        const real uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z;
+        const real uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real uhs_spread_t = b_c_in_platform_x - uhs_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real uhs_spread_t_2 = b_c_in_platform_y - uhs_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real uhs_spread_t_3 = b_c_in_platform_z - uhs_platform_point_z;
+        const real uhs_spread_t_4 = uhs_spread_t*uhs_spread_t + uhs_spread_t_2*uhs_spread_t_2 +
+            uhs_spread_t_3*uhs_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + uhs_spread_t_4 : uhs_spread_t_4;  /* spread_uhs */
+        /* (uhs-w_3) reciprocal vector 3 */
+        o[0*count + k] = uhs_w_3_x;
+        o[1*count + k] = uhs_w_3_y;
+        o[2*count + k] = uhs_w_3_z;
+        /* (uhs-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = uhs_H_a_3_x;
         o[4*count + k] = uhs_H_a_3_y;
         o[5*count + k] = uhs_H_a_3_z;
+        /* (uhs-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[6*count + k] = uhs_least_pivots;
-        o[8*count + k] = (uhs_w_3_t + (uhs_w_3_t_2 + uhs_w_3_t_3)) + ((uhs_H_a_3_x + uhs_H_a_3_y)
-            + (uhs_H_a_3_z + uhs_least_pivots));
+        o[8*count + k] = (uhs_w_3_x + (uhs_w_3_y + uhs_w_3_z)) + ((uhs_H_a_3_x + uhs_H_a_3_y) +
+            (uhs_H_a_3_z + uhs_least_pivots));
         const real uhs_size_t = m->uhs_size_t[i];
         const real uhs_size = m->uhs_size[i];
         o[7*count + k] = UNLESS(magnitude(uhs_rho2_1) > TOLERANCE*TOLERANCE*uhs_size_t) +
             UNLESS(magnitude(uhs_rho2_2) > TOLERANCE*TOLERANCE*uhs_size_t) +
-            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) + UNLESS(magnitude(uhs_v_1_r0_y) >
-            TOLERANCE*uhs_size);
+            UNLESS(magnitude(uhs_root_2) > TOLERANCE*uhs_size) +
+            UNLESS(magnitude(uhs_v_1_in_axes2_z) > TOLERANCE*uhs_size);
     }
 }
 
@@ -5565,8 +5769,9 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        const real total_uhs = sums[0*w + k];
-        const real spread_ = spread_t*root(total_uhs);
+        const real spread_uhs = sums[0*w + k];
+        const real spread_ = spread_t*root(spread_uhs);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

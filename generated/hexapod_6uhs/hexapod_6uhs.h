@@ -101,23 +101,29 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 6 legs of type uhs; copies of the first fill up */
-    hexapod_6uhs_real inv_uhs_joint3_pitch[8], inv_uhs_size[8], inv_uhs_size_t_3[8], uhs_J_2_xy[8],
-            uhs_J_2_xz[8], uhs_J_2_yy[8], uhs_J_2_yz[8], uhs_J_2_zz[8], uhs_J_3_xx[8], uhs_J_3_xy[8],
-            uhs_J_3_xz[8], uhs_J_3_yy[8], uhs_J_3_yz[8], uhs_J_3_zz[8], uhs_Jc_2_xx[8],
-            uhs_Sigma_2_xx[8], uhs_Sigma_2_yy[8], uhs_Sigma_2_zz[8], uhs_Sigma_3_xx[8],
-            uhs_Sigma_3_yy[8], uhs_Sigma_3_zz[8], uhs_b_r0_x[8], uhs_b_r0_y[8], uhs_b_r0_z[8],
+    hexapod_6uhs_real inv_uhs_joint3_pitch[8], inv_uhs_size[8], inv_uhs_size_t[8],
+            uhs_J_2_in_spec2_xy[8], uhs_J_2_in_spec2_xz[8], uhs_J_2_in_spec2_yy[8],
+            uhs_J_2_in_spec2_yz[8], uhs_J_2_in_spec2_zz[8], uhs_J_3_in_spec3_xx[8],
+            uhs_J_3_in_spec3_xy[8], uhs_J_3_in_spec3_xz[8], uhs_J_3_in_spec3_yy[8],
+            uhs_J_3_in_spec3_yz[8], uhs_J_3_in_spec3_zz[8], uhs_Jc_2_in_axes2_xx[8],
+            uhs_Sigma_2_in_axes2_xx[8], uhs_Sigma_2_in_axes2_yy[8], uhs_Sigma_2_in_axes2_zz[8],
+            uhs_Sigma_3_in_axes3_xx[8], uhs_Sigma_3_in_axes3_yy[8], uhs_Sigma_3_in_axes3_zz[8],
             uhs_base_frame_xx[8], uhs_base_frame_xy[8], uhs_base_frame_xz[8], uhs_base_frame_yx[8],
             uhs_base_frame_yy[8], uhs_base_frame_yz[8], uhs_base_frame_zx[8], uhs_base_frame_zy[8],
             uhs_base_frame_zz[8], uhs_base_point_x[8], uhs_base_point_y[8], uhs_base_point_z[8],
-            uhs_bias_t[8], uhs_branch_1[8], uhs_branch_2[8], uhs_d_G_t[8], uhs_d_phi_3_t[8],
-            uhs_d_phi_3_t_2[8], uhs_g_r0_x[8], uhs_g_r0_y[8], uhs_g_r0_z[8], uhs_h_2_x[8],
-            uhs_h_2_y[8], uhs_h_2_z[8], uhs_h_3_x[8], uhs_h_3_y[8], uhs_h_3_z[8],
-            uhs_joint3_offset_x[8], uhs_link2_mass[8], uhs_link3_mass[8],
+            uhs_bias_t[8], uhs_branch_1[8], uhs_branch_2[8], uhs_d_G_in_axes3_zz[8],
+            uhs_d_phi_3_in_axes3_yz[8], uhs_d_phi_3_t[8], uhs_h_2_in_spec2_x[8],
+            uhs_h_2_in_spec2_y[8], uhs_h_2_in_spec2_z[8], uhs_h_3_in_spec3_x[8],
+            uhs_h_3_in_spec3_y[8], uhs_h_3_in_spec3_z[8], uhs_joint3_offset_x[8], uhs_link2_mass[8],
+            uhs_link3_mass[8], uhs_mu_2_t[8], uhs_mu_2_t_2[8], uhs_mu_2_t_3[8],
             uhs_platform_joint_offset_x[8], uhs_platform_point_x[8], uhs_platform_point_y[8],
-            uhs_platform_point_z[8], uhs_size[8], uhs_size_t[8];
-    hexapod_6uhs_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
+            uhs_platform_point_z[8], uhs_potential_t[8], uhs_potential_t_2[8], uhs_potential_t_3[8],
+            uhs_size[8], uhs_size_t[8];
+    hexapod_6uhs_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hexapod_6uhs_model;
 
 extern const hexapod_6uhs_params hexapod_6uhs_default_params;

@@ -383,7 +383,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -584,51 +584,85 @@ def _prepare(p):
         uhs_joint3_pitch*uhs_joint3_pitch
     )
     uhs_size = sqrt(uhs_size_t)
-    # (uhs-q_3) displacement of joint 3
-    inv_uhs_joint3_pitch = 1.0/uhs_joint3_pitch
-    # (uhs-rho_tip_3) connection point to the centre of mass of link 3
-    uhs_rho_tip_3_x = uhs_link3_centre_of_mass_x - uhs_platform_joint_offset_x
-    # (uhs-h_3) first moment of link 3 about the connection point
-    uhs_h_3_x = uhs_link3_mass*uhs_rho_tip_3_x
-    uhs_h_3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass
-    uhs_h_3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass
-    # (uhs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    uhs_d_phi_3_t = inv_uhs_joint3_pitch*uhs_h_3_z
-    uhs_d_phi_3_t_2 = inv_uhs_joint3_pitch*uhs_h_3_y
-    # (uhs-J_3) inertia tensor of link 3 about the connection point
-    uhs_J_3_t = uhs_rho_tip_3_x*uhs_rho_tip_3_x
-    uhs_J_3_t_2 = uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_y
-    uhs_J_3_t_3 = uhs_link3_centre_of_mass_z*uhs_link3_centre_of_mass_z
-    uhs_J_3_t_4 = uhs_J_3_t + uhs_J_3_t_2 + uhs_J_3_t_3
-    uhs_J_3_xx = uhs_link3_inertia_xx - uhs_link3_mass*(uhs_J_3_t - uhs_J_3_t_4)
-    uhs_J_3_xy = uhs_link3_inertia_xy - uhs_link3_centre_of_mass_y*uhs_link3_mass*uhs_rho_tip_3_x
-    uhs_J_3_xz = uhs_link3_inertia_xz - uhs_link3_centre_of_mass_z*uhs_link3_mass*uhs_rho_tip_3_x
-    uhs_J_3_yy = uhs_link3_inertia_yy - uhs_link3_mass*(uhs_J_3_t_2 - uhs_J_3_t_4)
-    uhs_J_3_yz = (
-    uhs_link3_inertia_yz - uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass
-    )
-    uhs_J_3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 - uhs_J_3_t_4)
+    # (uhs-h_2) first moment of link 2 about the origin of link 2
+    uhs_h_2_in_spec2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass
+    uhs_h_2_in_spec2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass
+    uhs_h_2_in_spec2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass
     # (uhs-J_2) inertia tensor of link 2 about the origin of link 2
     uhs_J_2_t = uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_x
     uhs_J_2_t_2 = uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_y
     uhs_J_2_t_3 = uhs_link2_centre_of_mass_z*uhs_link2_centre_of_mass_z
     uhs_J_2_t_4 = uhs_J_2_t + uhs_J_2_t_2 + uhs_J_2_t_3
-    uhs_J_2_xx = uhs_link2_inertia_xx - uhs_link2_mass*(uhs_J_2_t - uhs_J_2_t_4)
-    uhs_J_2_xy = (
+    uhs_J_2_in_spec2_xx = uhs_link2_inertia_xx - uhs_link2_mass*(uhs_J_2_t - uhs_J_2_t_4)
+    uhs_J_2_in_spec2_xy = (
     uhs_link2_inertia_xy - uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_y*uhs_link2_mass
     )
-    uhs_J_2_xz = (
+    uhs_J_2_in_spec2_xz = (
     uhs_link2_inertia_xz - uhs_link2_centre_of_mass_x*uhs_link2_centre_of_mass_z*uhs_link2_mass
     )
-    uhs_J_2_yy = uhs_link2_inertia_yy - uhs_link2_mass*(uhs_J_2_t_2 - uhs_J_2_t_4)
-    uhs_J_2_yz = (
+    uhs_J_2_in_spec2_yy = uhs_link2_inertia_yy - uhs_link2_mass*(uhs_J_2_t_2 - uhs_J_2_t_4)
+    uhs_J_2_in_spec2_yz = (
     uhs_link2_inertia_yz - uhs_link2_centre_of_mass_y*uhs_link2_centre_of_mass_z*uhs_link2_mass
     )
-    uhs_J_2_zz = uhs_link2_inertia_zz - uhs_link2_mass*(uhs_J_2_t_3 - uhs_J_2_t_4)
+    uhs_J_2_in_spec2_zz = uhs_link2_inertia_zz - uhs_link2_mass*(uhs_J_2_t_3 - uhs_J_2_t_4)
+    # (uhs-rho_tip_3) connection point to the centre of mass of link 3
+    uhs_rho_tip_3_in_spec3_x = uhs_link3_centre_of_mass_x - uhs_platform_joint_offset_x
+    # (uhs-h_3) first moment of link 3 about the connection point
+    inv_uhs_joint3_pitch = 1.0/uhs_joint3_pitch
+    uhs_h_3_in_spec3_x = uhs_link3_mass*uhs_rho_tip_3_in_spec3_x
+    uhs_h_3_in_spec3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass
+    uhs_h_3_in_spec3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass
+    # (uhs-J_3) inertia tensor of link 3 about the connection point
+    uhs_J_3_t = uhs_rho_tip_3_in_spec3_x*uhs_rho_tip_3_in_spec3_x
+    uhs_J_3_t_2 = uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_y
+    uhs_J_3_t_3 = uhs_link3_centre_of_mass_z*uhs_link3_centre_of_mass_z
+    uhs_J_3_t_4 = uhs_J_3_t + uhs_J_3_t_2 + uhs_J_3_t_3
+    uhs_J_3_in_spec3_xx = uhs_link3_inertia_xx - uhs_link3_mass*(uhs_J_3_t - uhs_J_3_t_4)
+    uhs_J_3_in_spec3_xy = (
+    uhs_link3_inertia_xy - uhs_link3_centre_of_mass_y*uhs_link3_mass*uhs_rho_tip_3_in_spec3_x
+    )
+    uhs_J_3_in_spec3_xz = (
+    uhs_link3_inertia_xz - uhs_link3_centre_of_mass_z*uhs_link3_mass*uhs_rho_tip_3_in_spec3_x
+    )
+    uhs_J_3_in_spec3_yy = uhs_link3_inertia_yy - uhs_link3_mass*(uhs_J_3_t_2 - uhs_J_3_t_4)
+    uhs_J_3_in_spec3_yz = (
+    uhs_link3_inertia_yz - uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass
+    )
+    uhs_J_3_in_spec3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(uhs_J_3_t_3 - uhs_J_3_t_4)
+    # (uhs-bias) acceleration of the connection point at zero joint accelerations
+    uhs_bias_t = 2.0*uhs_joint3_pitch
+    # (uhs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    uhs_d_phi_3_t = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_z
+    uhs_d_phi_3_in_axes3_yz = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_y
     # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-    uhs_Jc_2_xx = uhs_J_2_xx + uhs_J_3_xx
+    uhs_Jc_2_in_axes2_xx = uhs_J_2_in_spec2_xx + uhs_J_3_in_spec3_xx
+    # (uhs-trace_J_3) half the trace of that inertia tensor
+    uhs_trace_J_3 = 0.5*uhs_J_3_in_spec3_xx + 0.5*uhs_J_3_in_spec3_yy + 0.5*uhs_J_3_in_spec3_zz
+    # (uhs-Sigma_3) second moment of mass of the links that turn with link 3
+    uhs_Sigma_3_in_axes3_xx = uhs_trace_J_3 - uhs_J_3_in_spec3_yy
+    uhs_Sigma_3_in_axes3_yy = uhs_trace_J_3 - uhs_J_3_in_spec3_zz
+    uhs_Sigma_3_in_axes3_zz = uhs_trace_J_3 - uhs_J_3_in_spec3_xx
+    # (uhs-trace_J_2) half the trace of that inertia tensor
+    uhs_trace_J_2 = 0.5*uhs_J_2_in_spec2_xx + 0.5*uhs_J_2_in_spec2_yy + 0.5*uhs_J_2_in_spec2_zz
+    # (uhs-Sigma_2) second moment of mass of the links that turn with link 2
+    uhs_Sigma_2_in_axes2_xx = uhs_trace_J_2 - uhs_J_2_in_spec2_xx
+    uhs_Sigma_2_in_axes2_yy = uhs_trace_J_2 - uhs_J_2_in_spec2_zz
+    uhs_Sigma_2_in_axes2_zz = uhs_trace_J_2 - uhs_J_2_in_spec2_yy
+    # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+    uhs_mu_2_t = (
+    gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx + gravity_z*uhs_base_frame_zx
+    )
+    uhs_mu_2_t_2 = (
+    gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy + gravity_z*uhs_base_frame_zy
+    )
+    uhs_mu_2_t_3 = (
+    gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz + gravity_z*uhs_base_frame_zz
+    )
+    # (uhs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_uhs_size_t = 1.0/uhs_size_t
+    inv_uhs_size = 1.0/uhs_size
     # (uhs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    uhs_d_G_t = inv_uhs_joint3_pitch*inv_uhs_joint3_pitch*uhs_J_3_xx
+    uhs_d_G_in_axes3_zz = inv_uhs_joint3_pitch*inv_uhs_joint3_pitch*uhs_J_3_in_spec3_xx
     # (h_star) first moment about the platform origin
     uhs_h_star_t = uhs_link3_mass*uhs_platform_point_x
     uhs_h_star_t_2 = uhs_link3_mass*uhs_platform_point_y
@@ -644,145 +678,125 @@ def _prepare(p):
     uhs_J_star_t_8 = uhs_link3_mass*(uhs_J_star_t_2 - uhs_J_star_t_4)
     uhs_J_star_t_9 = uhs_link3_mass*uhs_platform_point_y*uhs_platform_point_z
     uhs_J_star_t_10 = uhs_link3_mass*(uhs_J_star_t_3 - uhs_J_star_t_4)
-    # (uhs-bias) acceleration of the connection point at zero joint accelerations
-    uhs_bias_t = 2.0*uhs_joint3_pitch
-    # (uhs-trace_J_3) half the trace of that inertia tensor
-    uhs_trace_J_3 = 0.5*uhs_J_3_xx + 0.5*uhs_J_3_yy + 0.5*uhs_J_3_zz
-    # (uhs-Sigma_3) second moment of mass of the links that turn with link 3
-    uhs_Sigma_3_xx = uhs_trace_J_3 - uhs_J_3_yy
-    uhs_Sigma_3_yy = uhs_trace_J_3 - uhs_J_3_zz
-    uhs_Sigma_3_zz = uhs_trace_J_3 - uhs_J_3_xx
-    # (uhs-h_2) first moment of link 2 about the origin of link 2
-    uhs_h_2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass
-    uhs_h_2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass
-    uhs_h_2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass
-    # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    uhs_g_r0_x = (
-    gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx + gravity_z*uhs_base_frame_zx
-    )
-    uhs_g_r0_y = (
-    gravity_x*uhs_base_frame_xy + gravity_y*uhs_base_frame_yy + gravity_z*uhs_base_frame_zy
-    )
-    uhs_g_r0_z = (
-    gravity_x*uhs_base_frame_xz + gravity_y*uhs_base_frame_yz + gravity_z*uhs_base_frame_zz
-    )
-    # (uhs-trace_J_2) half the trace of that inertia tensor
-    uhs_trace_J_2 = 0.5*uhs_J_2_xx + 0.5*uhs_J_2_yy + 0.5*uhs_J_2_zz
-    # (uhs-Sigma_2) second moment of mass of the links that turn with link 2
-    uhs_Sigma_2_xx = uhs_trace_J_2 - uhs_J_2_xx
-    uhs_Sigma_2_yy = uhs_trace_J_2 - uhs_J_2_zz
-    uhs_Sigma_2_zz = uhs_trace_J_2 - uhs_J_2_yy
     # (potential) potential energy
-    uhs_b_r0_x = (
+    uhs_potential_t = (
     uhs_base_frame_xx*uhs_base_point_x + uhs_base_frame_yx*uhs_base_point_y +
         uhs_base_frame_zx*uhs_base_point_z
     )
-    uhs_b_r0_y = (
+    uhs_potential_t_2 = (
     uhs_base_frame_xy*uhs_base_point_x + uhs_base_frame_yy*uhs_base_point_y +
         uhs_base_frame_zy*uhs_base_point_z
     )
-    uhs_b_r0_z = (
+    uhs_potential_t_3 = (
     uhs_base_frame_xz*uhs_base_point_x + uhs_base_frame_yz*uhs_base_point_y +
         uhs_base_frame_zz*uhs_base_point_z
     )
-    # (uhs-rho2_1) squared amplitude
-    inv_uhs_size_t_3 = 1.0/uhs_size_t
-    # (uhs-w_1) reciprocal vector 1
-    inv_uhs_size = 1.0/uhs_size
-    total_uhs = np.sum(np.broadcast_to(uhs_link3_mass, _uhs))
-    total_uhs_x = np.sum(np.broadcast_to(uhs_h_star_t, _uhs))
-    total_uhs_y = np.sum(np.broadcast_to(uhs_h_star_t_2, _uhs))
-    total_uhs_z = np.sum(np.broadcast_to(uhs_h_star_t_3, _uhs))
-    total_uhs_xx = np.sum(np.broadcast_to(uhs_J_star_t_5, _uhs))
-    total_uhs_xy = np.sum(np.broadcast_to(uhs_J_star_t_6, _uhs))
-    total_uhs_xz = np.sum(np.broadcast_to(uhs_J_star_t_7, _uhs))
-    total_uhs_yy = np.sum(np.broadcast_to(uhs_J_star_t_8, _uhs))
-    total_uhs_yz = np.sum(np.broadcast_to(uhs_J_star_t_9, _uhs))
-    total_uhs_zz = np.sum(np.broadcast_to(uhs_J_star_t_10, _uhs))
-    total_uhs_x_2 = np.sum(np.broadcast_to(uhs_platform_point_x, _uhs))
-    total_uhs_y_2 = np.sum(np.broadcast_to(uhs_platform_point_y, _uhs))
-    total_uhs_z_2 = np.sum(np.broadcast_to(uhs_platform_point_z, _uhs))
-    total_uhs_2 = np.sum(np.broadcast_to(uhs_size_t, _uhs))
+    m_star_uhs = np.sum(np.broadcast_to(uhs_link3_mass, _uhs))
+    h_star_uhs_in_platform_x = np.sum(np.broadcast_to(uhs_h_star_t, _uhs))
+    h_star_uhs_in_platform_y = np.sum(np.broadcast_to(uhs_h_star_t_2, _uhs))
+    h_star_uhs_in_platform_z = np.sum(np.broadcast_to(uhs_h_star_t_3, _uhs))
+    J_star_uhs_in_platform_xx = np.sum(np.broadcast_to(-uhs_J_star_t_5, _uhs))
+    J_star_uhs_in_platform_xy = np.sum(np.broadcast_to(-uhs_J_star_t_6, _uhs))
+    J_star_uhs_in_platform_xz = np.sum(np.broadcast_to(-uhs_J_star_t_7, _uhs))
+    J_star_uhs_in_platform_yy = np.sum(np.broadcast_to(-uhs_J_star_t_8, _uhs))
+    J_star_uhs_in_platform_yz = np.sum(np.broadcast_to(-uhs_J_star_t_9, _uhs))
+    J_star_uhs_in_platform_zz = np.sum(np.broadcast_to(-uhs_J_star_t_10, _uhs))
+    b_c_uhs_in_platform_x = np.sum(np.broadcast_to(uhs_platform_point_x, _uhs))
+    b_c_uhs_in_platform_y = np.sum(np.broadcast_to(uhs_platform_point_y, _uhs))
+    b_c_uhs_in_platform_z = np.sum(np.broadcast_to(uhs_platform_point_z, _uhs))
+    legs_size_uhs = np.sum(np.broadcast_to(uhs_size_t, _uhs))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_uhs
+    m_star = m_star_uhs + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_uhs_x
-    h_star_y = h_star_t_2 + total_uhs_y
-    h_star_z = h_star_t_3 + total_uhs_z
+    h_star_in_platform_x = h_star_t + h_star_uhs_in_platform_x
+    h_star_in_platform_y = h_star_t_2 + h_star_uhs_in_platform_y
+    h_star_in_platform_z = h_star_t_3 + h_star_uhs_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_uhs_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_uhs_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_uhs_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_uhs_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_uhs_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_uhs_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_uhs_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_uhs_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_uhs_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_uhs_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_uhs_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_uhs_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_uhs_x_2
-    b_c_y = 0.16666666666666666*total_uhs_y_2
-    b_c_z = 0.16666666666666666*total_uhs_z_2
+    b_c_in_platform_x = 0.16666666666666666*b_c_uhs_in_platform_x
+    b_c_in_platform_y = 0.16666666666666666*b_c_uhs_in_platform_y
+    b_c_in_platform_z = 0.16666666666666666*b_c_uhs_in_platform_z
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_uhs_2)
+    legs_size = sqrt(legs_size_uhs)*spread_t
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_uhs,
-        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yy, uhs_J_2_yz, uhs_J_2_zz,
-                    uhs_J_3_xx, uhs_J_3_xy, uhs_J_3_xz, uhs_J_3_yy, uhs_J_3_yz, uhs_J_3_zz,
-                    uhs_Jc_2_xx, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
-                    uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
-                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-                    uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
-                    uhs_d_G_t, uhs_d_phi_3_t, uhs_d_phi_3_t_2, uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z,
-                    uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x, uhs_h_3_y, uhs_h_3_z,
-                    uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
+        (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
+                    uhs_J_2_in_spec2_yz, uhs_J_2_in_spec2_zz, uhs_J_3_in_spec3_xx,
+                    uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yy,
+                    uhs_J_3_in_spec3_yz, uhs_J_3_in_spec3_zz, uhs_Jc_2_in_axes2_xx,
+                    uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
+                    uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
+                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
+                    uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_d_G_in_axes3_zz,
+                    uhs_d_phi_3_in_axes3_yz, uhs_d_phi_3_t, uhs_h_2_in_spec2_x,
+                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_mu_2_t,
+                    uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x, uhs_platform_point_x,
                     uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_uhs,
-        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yy, uhs_J_2_yz, uhs_J_2_zz,
-                    uhs_J_3_xx, uhs_J_3_xy, uhs_J_3_xz, uhs_J_3_yy, uhs_J_3_yz, uhs_J_3_zz,
-                    uhs_Jc_2_xx, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
-                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
-                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-                    uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_d_G_t, uhs_d_phi_3_t,
-                    uhs_d_phi_3_t_2, uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x,
-                    uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z, uhs_size, uhs_size_t,),
+        (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
+                    uhs_J_2_in_spec2_yz, uhs_J_2_in_spec2_zz, uhs_J_3_in_spec3_xx,
+                    uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yy,
+                    uhs_J_3_in_spec3_yz, uhs_J_3_in_spec3_zz, uhs_Jc_2_in_axes2_xx,
+                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
+                    uhs_branch_1, uhs_branch_2, uhs_d_G_in_axes3_zz, uhs_d_phi_3_in_axes3_yz,
+                    uhs_d_phi_3_t, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
+                    uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
+                    uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_uhs,
-        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
-                    uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
-                    uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
-                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-                    uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
-                    uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z,
-                    uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x,
-                    uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z, uhs_size, uhs_size_t,),
+        (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
+                    uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
+                    uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
+                    uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
+                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
+                    uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x,
+                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_mu_2_t,
+                    uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x, uhs_platform_point_x,
+                    uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -799,20 +813,24 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_uhs,
-        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
-                    uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
-                    uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
-                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-                    uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
-                    uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z,
-                    uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x,
-                    uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z, uhs_size, uhs_size_t,),
+        (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
+                    uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
+                    uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
+                    uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
+                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
+                    uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x,
+                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_mu_2_t,
+                    uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x, uhs_platform_point_x,
+                    uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -859,45 +877,49 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_uhs,
-        (inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
-                    uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
-                    uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
-                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-                    uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
-                    uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z,
-                    uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_link3_mass,
-                    uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-                    uhs_platform_point_z, uhs_size, uhs_size_t,),
+        (inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
+                    uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
+                    uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
+                    uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
+                    uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+                    uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+                    uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
+                    uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x,
+                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_link3_mass,
+                    uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x,
+                    uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
+                    uhs_size_t,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_uhs,
-        (inv_uhs_joint3_pitch, uhs_b_r0_x, uhs_b_r0_y, uhs_b_r0_z, uhs_base_frame_xx,
-                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1,
-                    uhs_branch_2, uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y,
-                    uhs_h_2_z, uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x,
-                    uhs_link2_mass, uhs_platform_joint_offset_x, uhs_platform_point_x,
-                    uhs_platform_point_y, uhs_platform_point_z, uhs_size_t,),
+        (inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+                    uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+                    uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+                    uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x,
+                    uhs_h_2_in_spec2_y, uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x,
+                    uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_link2_mass,
+                    uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3, uhs_platform_joint_offset_x,
+                    uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
+                    uhs_potential_t, uhs_potential_t_2, uhs_potential_t_3, uhs_size_t,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_uhs,
-        (inv_uhs_joint3_pitch, inv_uhs_size, inv_uhs_size_t_3, uhs_base_frame_xx,
-                    uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-                    uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-                    uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1,
-                    uhs_branch_2, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
-                    uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
-                    uhs_size_t,),
+        (inv_uhs_joint3_pitch, inv_uhs_size, inv_uhs_size_t, uhs_base_frame_xx, uhs_base_frame_xy,
+                    uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+                    uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+                    uhs_base_point_y, uhs_base_point_z, uhs_branch_1, uhs_branch_2,
+                    uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
+                    uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,),
                 ),
             ),
         ),
@@ -1394,9 +1416,10 @@ def _run_dynamics(m, X, V):
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1451,569 +1474,661 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yy, uhs_J_2_yz, uhs_J_2_zz,
-            uhs_J_3_xx, uhs_J_3_xy, uhs_J_3_xz, uhs_J_3_yy, uhs_J_3_yz, uhs_J_3_zz, uhs_Jc_2_xx,
-            uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx, uhs_Sigma_3_yy,
-            uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+        inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
+            uhs_J_2_in_spec2_yz, uhs_J_2_in_spec2_zz, uhs_J_3_in_spec3_xx, uhs_J_3_in_spec3_xy,
+            uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yy, uhs_J_3_in_spec3_yz, uhs_J_3_in_spec3_zz,
+            uhs_Jc_2_in_axes2_xx, uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy,
+            uhs_Sigma_2_in_axes2_zz, uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy,
+            uhs_Sigma_3_in_axes3_zz, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
             uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
             uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
-            uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_d_G_t, uhs_d_phi_3_t,
-            uhs_d_phi_3_t_2, uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z,
-            uhs_h_3_x, uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
-            uhs_size_t,
+            uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2, uhs_d_G_in_axes3_zz,
+            uhs_d_phi_3_in_axes3_yz, uhs_d_phi_3_t, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
+            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
+            uhs_joint3_offset_x, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
+            uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
-        # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_7 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
-        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_t = uhs_c_2*uhs_c_3_t
-        uhs_v_1_t_2 = uhs_c_2*uhs_s_3
-        uhs_v_1_t_3 = uhs_root_2*uhs_v_1_t_2
-        uhs_v_1_t_4 = uhs_root_2*uhs_v_1_t
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
-        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
-        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
-        uhs_w_1_t = uhs_s_2*uhs_s_3
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
-        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-w_1) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
-        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
-        axis_y_uhs_axes3_in_base_x = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*uhs_v_1_t_2
+        uhs_h_3_t_8 = uhs_h_3_t_6 + uhs_h_3_t_7*uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_y = sin(uhs_h_3_t_11)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_in_axes2_y = (
+        uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_y - uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z
         )
-        axis_y_uhs_axes3_in_base_y = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*uhs_v_1_t_2
-        )
-        axis_y_uhs_axes3_in_base_z = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*uhs_v_1_t_2
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
-        )
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_3 - uhs_s_3*uhs_v_1_t_4
-        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_4 + uhs_s_3*uhs_v_1_t_3
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
-        uhs_w_1_t_2 = inv_uhs_v_1_r0_y*uhs_s_3
-        uhs_w_1_t_3 = inv_uhs_v_1_r0_y*uhs_c_3_t
-        # (uhs-w_2) reciprocal vector 2
-        uhs_w_2_t = inv_uhs_root_2*inv_uhs_v_1_r0_y*uhs_v_1_r0_x
-        uhs__r1_x = inv_uhs_root_2*uhs_c_3_t - uhs_s_3*uhs_w_2_t
-        uhs__r1_y = -inv_uhs_root_2*uhs_s_3 - uhs_c_3_t*uhs_w_2_t
-        # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        uhs_d_alpha_3_t = uhs_s_2*uhs_w_1_t_3
-        # (uhs-L_c_3) moment about joint 3 that accelerates joint 3, per unit
-        uhs_L_c_3_r0_y = uhs_J_3_xy*uhs_s_3 + uhs_J_3_xz*uhs_c_3_t
-        # (uhs-D_1_3) inertia of joint 3 along joint 1
-        uhs_D_1_3 = uhs_J_3_xx*uhs_s_2 + uhs_J_3_xz*uhs_v_1_t_2 - uhs_J_3_xy*uhs_v_1_t
         # (uhs-J_3) inertia tensor of link 3 about the connection point
-        uhs_J_3_t = uhs_J_3_yz*uhs_s_3
-        uhs__x = uhs_J_3_yy*uhs_c_3_t - uhs_J_3_t
-        uhs_J_3_t_2 = uhs_J_3_yz*uhs_c_3_t
-        uhs__x_2 = uhs_J_3_t_2 - uhs_J_3_zz*uhs_s_3
-        # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        uhs_Jc_2_xy = uhs_J_3_xy*uhs_c_3_t - uhs_J_2_xz - uhs_J_3_xz*uhs_s_3
-        # (uhs-L_c_2) moment about joint 2 that accelerates joint 2, per unit
-        uhs_L_c_2_r0_y = (
-        uhs_s_2*(uhs_J_2_xy + uhs_L_c_3_r0_y) - uhs_c_2*(uhs__x*uhs_s_3 + uhs__x_2*uhs_c_3_t -
-            uhs_J_2_yz)
+        uhs_J_3_in_axes2_xz = (
+        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x + uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_y
         )
-        # (uhs-h_3) first moment of link 3 about the connection point
-        uhs_h_3_r1_x = uhs_c_3_t*uhs_h_3_y - uhs_h_3_z*uhs_s_3
-        # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        uhs_d_Gamma_2_t = (
-        inv_uhs_root_2*(uhs_J_2_yy + uhs_c_3_t*(uhs_J_3_t + uhs_J_3_zz*uhs_c_3_t) +
-            uhs_s_3*(uhs_J_3_t_2 + uhs_J_3_yy*uhs_s_3))
-        )
-        uhs_d_Gamma_2_t_2 = inv_uhs_v_1_r0_y*(uhs_L_c_2_r0_y - uhs_d_Gamma_2_t*uhs_v_1_r0_x)
-        uhs_d_Gamma_2_x = inv_uhs_joint3_pitch*uhs_L_c_3_r0_y - uhs_h_3_r1_x
-        uhs_d_Gamma_2_y = uhs_d_Gamma_2_t + uhs_h_3_x
-        # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        uhs_d_Gamma_1_t = inv_uhs_root_2*uhs_L_c_2_r0_y
-        uhs_d_Gamma_1_t_2 = (
-        uhs_s_2*(uhs_Jc_2_xx*uhs_s_2 - uhs_Jc_2_xy*uhs_c_2) - uhs_c_2*(uhs_Jc_2_xy*uhs_s_2 -
-            uhs_c_2*(uhs_J_2_zz + uhs__x*uhs_c_3_t - uhs__x_2*uhs_s_3)) -
-            uhs_d_Gamma_1_t*uhs_v_1_r0_x
-        )
-        uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
-        uhs__r0_y = uhs_d_Gamma_1_t_3*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_t
-        uhs_d_Gamma_1_x = (
-        inv_uhs_v_1_r0_y*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_x + uhs_h_3_r1_x*uhs_s_2
-        )
-        uhs_d_Gamma_1_y = (
-        uhs_c_3_t*uhs_h_3_z + uhs_h_3_y*uhs_s_3 - uhs_c_2*uhs_d_Gamma_1_t_3 -
-            uhs_d_Gamma_1_t*uhs_s_2
-        )
-        uhs_d_Gamma_1_r1_x = uhs__r0_y*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_y
-        uhs_d_Gamma_1_r1_y = -uhs__r0_y*uhs_c_2 - uhs_d_Gamma_1_y*uhs_s_2
-        uhs_d_Gamma_1_r3_y = uhs_c_3_t*uhs_d_Gamma_1_x - uhs_d_Gamma_1_r1_y*uhs_s_3
-        # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        uhs_d_Gamma_2_r1_y = uhs_c_3_t*uhs_d_Gamma_2_t_2 - uhs_d_Gamma_2_y*uhs_s_3
-        # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        uhs_d_c_xx = (
-        uhs_h_3_z*uhs_s_2*uhs_w_1_t_2 - uhs__r1_x*(uhs_c_3_t*uhs_d_Gamma_2_y +
-            uhs_d_Gamma_2_t_2*uhs_s_3) - uhs_h_3_x*(uhs__r1_x*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_2)
-            - uhs_w_1_t_2*(uhs_c_3_t*uhs_d_Gamma_1_r1_y + uhs_d_Gamma_1_x*uhs_s_3)
-        )
-        uhs_d_c_xy = (
-        uhs_d_alpha_3_t*uhs_h_3_z - uhs__r1_x*uhs_d_Gamma_2_r1_y - uhs_d_Gamma_1_r3_y*uhs_w_1_t_2
-            - uhs_h_3_x*(uhs__r1_y*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_3)
-        )
-        uhs_d_c_xz = uhs_d_phi_3_t - uhs__r1_x*uhs_d_Gamma_2_x - uhs_d_Gamma_1_r1_x*uhs_w_1_t_2
-        uhs_d_c_yz = -uhs_d_phi_3_t_2 - uhs__r1_y*uhs_d_Gamma_2_x - uhs_d_Gamma_1_r1_x*uhs_w_1_t_3
-        # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
-        uhs_Q_t = (
-        uhs_d_c_xx + uhs__r1_y*uhs_d_Gamma_2_r1_y + uhs_d_Gamma_1_r3_y*uhs_w_1_t_3 +
-            uhs_d_alpha_3_t*uhs_h_3_y - uhs_h_3_x*(uhs__r1_y*uhs_s_3 - uhs_v_1_t*uhs_w_1_t_3)
-        )
-        uhs_Q_t_2 = 0.5*uhs_Q_t
-        uhs_Q_t_3 = uhs_d_G_t + uhs_d_c_xx
-        uhs_Q_t_4 = 0.5*uhs_Q_t_3
-        uhs_Q_t_5 = (
-        axis_x_uhs_axes3_x*uhs_d_c_xy + uhs_axis_z_x*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_x*uhs_Q_t_2
-        )
-        uhs_Q_t_6 = (
-        axis_x_uhs_axes3_y*uhs_d_c_xy + uhs_axis_z_y*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_y*uhs_Q_t_2
-        )
-        uhs_Q_t_7 = (
-        axis_x_uhs_axes3_z*uhs_d_c_xy + uhs_axis_z_z*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_z*uhs_Q_t_2
-        )
-        uhs_Q_t_8 = uhs_Q_t_4*uhs_axis_z_x - axis_x_uhs_axes3_x*uhs_d_c_xz
-        uhs_Q_t_9 = uhs_Q_t_4*uhs_axis_z_y - axis_x_uhs_axes3_y*uhs_d_c_xz
-        uhs_Q_t_10 = uhs_Q_t_4*uhs_axis_z_z - axis_x_uhs_axes3_z*uhs_d_c_xz
-        uhs_Q_t_11 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_5 - uhs_Q_t_8*uhs_axis_z_x
-        uhs_Q_t_12 = 2.0*uhs_Q_t_11 + uhs_d_c_xx
-        uhs_Q_t_13 = (
-        axis_y_uhs_axes3_in_base_x*uhs_Q_t_6 + axis_y_uhs_axes3_in_base_y*uhs_Q_t_5 -
-            uhs_Q_t_8*uhs_axis_z_y - uhs_Q_t_9*uhs_axis_z_x
-        )
-        uhs_Q_t_14 = (
-        axis_y_uhs_axes3_in_base_x*uhs_Q_t_7 + axis_y_uhs_axes3_in_base_z*uhs_Q_t_5 -
-            uhs_Q_t_10*uhs_axis_z_x - uhs_Q_t_8*uhs_axis_z_z
-        )
-        uhs_Q_t_15 = axis_y_uhs_axes3_in_base_y*uhs_Q_t_6 - uhs_Q_t_9*uhs_axis_z_y
-        uhs_Q_t_16 = 2.0*uhs_Q_t_15 + uhs_d_c_xx
-        uhs_Q_t_17 = (
-        axis_y_uhs_axes3_in_base_y*uhs_Q_t_7 + axis_y_uhs_axes3_in_base_z*uhs_Q_t_6 -
-            uhs_Q_t_10*uhs_axis_z_y - uhs_Q_t_9*uhs_axis_z_z
-        )
-        uhs_Q_t_18 = axis_y_uhs_axes3_in_base_z*uhs_Q_t_7 - uhs_Q_t_10*uhs_axis_z_z
-        uhs_Q_t_19 = 2.0*uhs_Q_t_18 + uhs_d_c_xx
-        # (M_ta) coupling block of M
-        uhs_M_ta_t = uhs_Q_t_13*uhs_q_in_base_z
-        uhs_M_ta_t_2 = uhs_Q_t_14*uhs_q_in_base_y
-        uhs_M_ta_t_3 = uhs_M_ta_t - uhs_M_ta_t_2
-        uhs_M_ta_t_4 = uhs_Q_t_12*uhs_q_in_base_z - uhs_Q_t_14*uhs_q_in_base_x
-        uhs_M_ta_t_5 = uhs_Q_t_12*uhs_q_in_base_y - uhs_Q_t_13*uhs_q_in_base_x
-        uhs_M_ta_t_6 = uhs_Q_t_16*uhs_q_in_base_z - uhs_Q_t_17*uhs_q_in_base_y
-        uhs_M_ta_t_7 = uhs_Q_t_17*uhs_q_in_base_x
-        uhs_M_ta_t_8 = uhs_M_ta_t - uhs_M_ta_t_7
-        uhs_M_ta_t_9 = uhs_Q_t_13*uhs_q_in_base_y - uhs_Q_t_16*uhs_q_in_base_x
-        uhs_M_ta_t_10 = uhs_Q_t_17*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_y
-        uhs_M_ta_t_11 = uhs_Q_t_14*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_x
-        uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2
-        # (M_aa) rotational block of M
-        uhs_M_aa_t = uhs_M_ta_t_6*uhs_q_in_base_z - uhs_M_ta_t_10*uhs_q_in_base_y
-        uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_y
-        uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_in_base_y + uhs_M_ta_t_9*uhs_q_in_base_z
-        uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_x
-        uhs_M_aa_t_5 = uhs_M_ta_t_12*uhs_q_in_base_x + uhs_M_ta_t_5*uhs_q_in_base_z
-        uhs_M_aa_t_6 = uhs_M_ta_t_5*uhs_q_in_base_y - uhs_M_ta_t_9*uhs_q_in_base_x
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_6)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_h_3_t_6 = 1.0/uhs_h_3_t_6
+        uhs_c_1 = -inv_uhs_h_3_t_6*uhs_h_3_t_5*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_h_3_t_6*uhs_h_3_t_4*uhs_root_1
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = -inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_h_3_t_8*uhs_h_3_t_7*uhs_h_3_t_9
         # (uhs-S_dot) velocity of the connection point
-        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
-        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
-        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x
         uhs_S_dot_x = t_dot_x + uhs_S_dot_t
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
-        uhs_S_dot_r0_x = (
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_e_2_in_axes3_y
+        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
+        uhs_v_1_in_axes3_y = -uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_y = (
+        uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_y
+        )
+        uhs_v_1_in_axes2_z = (
+        uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_y
+        )
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x
+        uhs_w_1_in_axes3_y = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_y
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_in_axes2_y
+        uhs_w_2_in_axes3_x = inv_uhs_h_3_t_9*uhs_e_2_in_axes3_y - uhs_e_2_in_axes3_x*uhs_w_2_t
+        uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_e_2_in_axes3_y*uhs_w_2_t
+        # (uhs-w_3) reciprocal vector 3
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
+        uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
+        uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
+        # (uhs-qd_1) rate of joint 1
+        uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
         )
-        uhs_S_dot_r0_y = (
+        uhs_qd_1_t_2 = (
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_S_dot_r0_z = (
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        # (uhs-qd_2) rate of joint 2
+        uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
-        # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
-        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
         uhs_qd_2 = (
-        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
+        inv_uhs_h_3_t_9*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
         )
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_t = uhs_qd_1*uhs_s_2
-        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
+        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
-        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
+        uhs_omega_2_in_axes3_x = (
+        uhs_e_2_in_axes3_x*uhs_qd_2 + uhs_e_2_in_axes3_y*uhs_omega_1_in_axes2_y
+        )
+        uhs_omega_2_in_axes3_y = (
+        uhs_e_2_in_axes3_y*uhs_qd_2 - uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y
+        )
+        # (uhs-W_2) centripetal tensor of link 2
+        uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
+        uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
+        uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y
+        uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x
+        uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y
+        uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y
+        uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2
         # (uhs-omega_3) angular velocity of link 3
-        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
-        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3
-        uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3
+        uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3
+        # (uhs-W_3) centripetal tensor of link 3
+        uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
+        uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
         # (uhs-u_1) centripetal acceleration of the connection point
+        uhs_u_1_t = uhs_e_2_in_axes3_x*uhs_s_2
+        uhs_u_1_t_2 = uhs_c_1*uhs_e_2_in_axes3_y - uhs_s_1*uhs_u_1_t
+        uhs_u_1_t_3 = uhs_c_1*uhs_u_1_t + uhs_e_2_in_axes3_y*uhs_s_1
+        axis_y_uhs_axes3_x = (
+        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
+            uhs_base_frame_xz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_y = (
+        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
+            uhs_base_frame_yz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_z = (
+        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
+            uhs_base_frame_zz*uhs_e_1_in_axes3_y
+        )
+        axis_x_uhs_axes3_x = (
+        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
+        )
+        axis_x_uhs_axes3_y = (
+        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
+        )
+        axis_x_uhs_axes3_z = (
+        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
+        )
         uhs_u_1_x = omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
         uhs_u_1_y = omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
         uhs_u_1_z = omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
-        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2
-        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
-        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
-        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
-        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t
-        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y
-        # (uhs-W_2) centripetal tensor of link 2
-        uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t
-        uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2
-        uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2
-        uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2
-        # (uhs-W_3) centripetal tensor of link 3
-        uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x
-        uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y
-        uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z
-        uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y
-        uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z
-        uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z
-        uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2
-        # (uhs-bias) acceleration of the connection point at zero joint accelerations
-        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
-        uhs_bias_x = (
-        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
-            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y)
-        )
-        uhs_bias_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
-            uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x
-        )
-        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
-        # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_tip_x = (
+        uhs_u_1_in_axes3_x = (
         axis_x_uhs_axes3_x*uhs_u_1_x + axis_x_uhs_axes3_y*uhs_u_1_y + axis_x_uhs_axes3_z*uhs_u_1_z
         )
-        uhs_u_1_tip_y = (
-        axis_y_uhs_axes3_in_base_x*uhs_u_1_x + axis_y_uhs_axes3_in_base_y*uhs_u_1_y +
-            axis_y_uhs_axes3_in_base_z*uhs_u_1_z
+        uhs_u_1_in_axes3_y = (
+        axis_y_uhs_axes3_x*uhs_u_1_x + axis_y_uhs_axes3_y*uhs_u_1_y + axis_y_uhs_axes3_z*uhs_u_1_z
         )
-        uhs_u_1_tip_z = uhs_axis_z_x*uhs_u_1_x + uhs_axis_z_y*uhs_u_1_y + uhs_axis_z_z*uhs_u_1_z
+        uhs_u_1_in_axes3_z = (
+        axis_z_uhs_axes3_x*uhs_u_1_x + axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z
+        )
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_y
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
+        uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_in_axes3_x = (
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_h_3_t_10*(uhs_W_3_in_axes3_xz +
+            uhs_beta_3_in_axes3_y) + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x)
+        )
+        uhs_bias_in_axes3_y = (
+        uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
+            uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) -
+            uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        )
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
         # (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        uhs_rel_o_x = uhs_u_1_tip_x - uhs_bias_x
-        uhs_rel_o_y = uhs_u_1_tip_y - uhs_bias_y
-        uhs_rel_o_z = uhs_u_1_tip_z - uhs_bias_z
-        # (uhs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        uhs_qdd_1_o = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_o_y + uhs_rel_o_x*uhs_s_3)
+        uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x
+        uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y
+        uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
+        # (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        uhs_qdd_1_o = (
+        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_rel_o_in_axes3_y)
+        )
+        # (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
         uhs_qdd_2_o = (
-        inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_r0_x + uhs_rel_o_y*uhs_s_3 - uhs_c_3_t*uhs_rel_o_x)
+        -inv_uhs_h_3_t_9*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y + uhs_qdd_1_o*uhs_v_1_in_axes2_y
+            - uhs_e_2_in_axes3_y*uhs_rel_o_in_axes3_x)
         )
         # (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        uhs_alpha_1_o_t = uhs_qdd_1_o*uhs_s_2
-        uhs_alpha_1_o_t_2 = uhs_c_2*uhs_qdd_1_o
+        uhs_alpha_1_o_in_axes2_x = uhs_qdd_1_o*uhs_s_2
+        uhs_alpha_1_o_in_axes2_y = uhs_c_2*uhs_qdd_1_o
         # (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        uhs_alpha_2_o_x = uhs_alpha_1_o_t - uhs_zeta_2_x
-        uhs_alpha_2_o_y = -uhs_alpha_1_o_t_2 - uhs_zeta_2_y
+        uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x
+        uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz
+        # (uhs-B_2_o) remainder of the acceleration tensor of link 2
+        uhs_B_2_o_in_axes2_xy = uhs_W_2_in_axes2_xy - uhs_qdd_2_o
+        uhs_B_2_o_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2_o
+        uhs_B_2_o_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y
+        uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x
+        # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        uhs_d_alpha_3_in_axes3_zy = uhs_s_2*uhs_w_1_in_axes3_y
         # (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        uhs_alpha_3_o_x = uhs_zeta_3_x + uhs_alpha_2_o_y*uhs_c_3_t - uhs_qdd_2_o*uhs_s_3
-        uhs_alpha_3_o_y = -uhs_zeta_3_y - uhs_alpha_2_o_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2_o
-        uhs_alpha_3_o_z = uhs_alpha_2_o_x + inv_uhs_joint3_pitch*uhs_rel_o_z
+        uhs_alpha_3_o_in_axes3_x = (
+        uhs_zeta_3_in_axes3_x + uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_y +
+            uhs_e_2_in_axes3_x*uhs_qdd_2_o
+        )
+        uhs_alpha_3_o_in_axes3_y = (
+        uhs_zeta_3_in_axes3_y + uhs_e_2_in_axes3_y*uhs_qdd_2_o -
+            uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_x
+        )
+        uhs_alpha_3_o_in_axes3_z = (
+        uhs_alpha_2_o_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z
+        )
         # (uhs-B_3_o) remainder of the acceleration tensor of link 3
-        uhs_B_3_o_xy = uhs_W_3_xy - uhs_alpha_3_o_z
-        uhs_B_3_o_xz = uhs_W_3_xz + uhs_alpha_3_o_y
-        uhs_B_3_o_yx = uhs_W_3_xy + uhs_alpha_3_o_z
-        uhs_B_3_o_yz = uhs_W_3_yz - uhs_alpha_3_o_x
-        uhs_B_3_o_zx = uhs_W_3_xz - uhs_alpha_3_o_y
-        uhs_B_3_o_zy = uhs_W_3_yz + uhs_alpha_3_o_x
+        uhs_B_3_o_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z
+        uhs_B_3_o_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y
+        uhs_B_3_o_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z
+        uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x
+        uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y
+        uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x
         # (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_o_x = (
-        uhs_u_1_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+        uhs_acc_3_o_in_axes3_x = (
+        uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
             axis_x_uhs_axes3_z*gravity_z
         )
-        uhs_acc_3_o_y = (
-        uhs_u_1_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
-            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z
+        uhs_acc_3_o_in_axes3_y = (
+        uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
+            axis_y_uhs_axes3_z*gravity_z
         )
-        uhs_acc_3_o_z = (
-        uhs_u_1_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y - gravity_z*uhs_axis_z_z
+        uhs_acc_3_o_in_axes3_z = (
+        uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
+            axis_z_uhs_axes3_z*gravity_z
+        )
+        # (uhs-D_1_3) inertia of joint 3 along joint 1
+        uhs_D_1_3 = (
+        uhs_J_3_in_spec3_xx*uhs_s_2 + uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x +
+            uhs_J_3_in_spec3_xz*uhs_e_1_in_axes3_y
+        )
+        # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_y - uhs_Jc_2_t
+        uhs_Jc_2_t_3 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_y
+        uhs_Jc_2_t_4 = uhs_Jc_2_t_3 - uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_in_axes2_xy = (
+        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_y - uhs_J_2_in_spec2_xz -
+            uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x
+        )
+        uhs_Jc_2_in_axes1_xz = (
+        uhs_c_2*(uhs_Jc_2_t_2*uhs_e_2_in_axes3_x + uhs_Jc_2_t_4*uhs_e_2_in_axes3_y -
+            uhs_J_2_in_spec2_yz) + uhs_s_2*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz)
         )
         # (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        uhs_mu_3_o_x = (
-        uhs_B_3_o_yx*uhs_J_3_xy + uhs_B_3_o_zy*uhs_Sigma_3_yy + uhs_J_3_xz*(uhs_W_3_t_2 -
-            uhs_W_3_t_3) + uhs_acc_3_o_z*uhs_h_3_z - uhs_B_3_o_yz*uhs_Sigma_3_zz -
-            uhs_B_3_o_zx*uhs_J_3_yz - uhs_acc_3_o_y*uhs_h_3_x
+        uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
+        uhs_mu_3_o_in_axes3_x = (
+        uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy
+            + uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_o_t) +
+            uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_yz*uhs_Sigma_3_in_axes3_zz -
+            uhs_B_3_o_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_x
         )
-        uhs_mu_3_o_y = (
-        uhs_B_3_o_xz*uhs_Sigma_3_zz + uhs_B_3_o_zy*uhs_J_3_yz + uhs_acc_3_o_x*uhs_h_3_x -
-            uhs_B_3_o_xy*uhs_J_3_xz - uhs_B_3_o_zx*uhs_Sigma_3_xx - uhs_J_3_xy*(uhs_W_3_t -
-            uhs_W_3_t_3) - uhs_acc_3_o_z*uhs_h_3_y
+        uhs_mu_3_o_in_axes3_y = (
+        uhs_B_3_o_in_axes3_xz*uhs_Sigma_3_in_axes3_zz + uhs_B_3_o_in_axes3_zy*uhs_J_3_in_spec3_yz
+            + uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_x -
+            uhs_B_3_o_in_axes3_xy*uhs_J_3_in_spec3_xz -
+            uhs_B_3_o_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
+            uhs_mu_3_o_t) - uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_y
         )
-        uhs_mu_3_o_z = (
-        uhs_B_3_o_xz*uhs_J_3_xz + uhs_B_3_o_yx*uhs_Sigma_3_xx + uhs_J_3_yz*(uhs_W_3_t -
-            uhs_W_3_t_2) + uhs_acc_3_o_y*uhs_h_3_y - uhs_B_3_o_xy*uhs_Sigma_3_yy -
-            uhs_B_3_o_yz*uhs_J_3_xy - uhs_acc_3_o_x*uhs_h_3_z
+        uhs_mu_3_o_in_axes3_z = (
+        uhs_B_3_o_in_axes3_xz*uhs_J_3_in_spec3_xz + uhs_B_3_o_in_axes3_yx*uhs_Sigma_3_in_axes3_xx
+            + uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2) +
+            uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_y -
+            uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
+            uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z
         )
-        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x
-        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
-        uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y
-        uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2
-        # (uhs-B_2_o) remainder of the acceleration tensor of link 2
-        uhs_B_2_o_xy = uhs_qdd_2_o - uhs_W_2_xy
-        uhs_B_2_o_yx = -uhs_W_2_xy - uhs_qdd_2_o
-        uhs_B_2_o_zx = uhs_zeta_2_y - uhs_alpha_2_o_y
-        uhs_B_2_o_zy = uhs_alpha_2_o_x - uhs_zeta_2_x
         # (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_o_x = (
-        uhs_B_2_o_yx*uhs_J_2_xy + uhs_B_2_o_zx*uhs_J_2_xz + uhs_B_2_o_zy*uhs_Sigma_2_yy +
-            uhs_Sigma_2_zz*uhs_alpha_1_o_t + uhs_g_r1_x*uhs_h_2_z + uhs_g_r3_y*uhs_h_2_y -
-            uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3)
+        uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_mu_2_t_3*uhs_s_2
+        uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_o_t_4*uhs_s_2
+        uhs_mu_2_o_in_axes2_x = (
+        uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
+            uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y
+            + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_o_t_2 -
+            uhs_mu_2_o_t_3)
         )
-        uhs_mu_2_o_y = (
-        uhs_B_2_o_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x - uhs_B_2_o_zx*uhs_Sigma_2_xx -
-            uhs_B_2_o_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t - uhs_W_2_t_3) -
-            uhs_Sigma_2_zz*uhs_alpha_1_o_t_2 - uhs_g_r3_x*uhs_h_2_y
+        uhs_mu_2_o_in_axes2_y = (
+        uhs_B_2_o_in_axes2_xy*uhs_J_2_in_spec2_yz +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+            - uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_o_t -
+            uhs_mu_2_o_t_3) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y
         )
-        uhs_mu_2_o_z = (
-        uhs_B_2_o_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_o_t + uhs_J_2_yz*uhs_alpha_1_o_t_2 -
-            uhs_B_2_o_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t - uhs_W_2_t_2) -
-            uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x
+        uhs_mu_2_o_in_axes2_z = (
+        uhs_B_2_o_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x -
+            uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_o_t -
+            uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         )
         # (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        uhs_N_2_o_x = uhs_mu_2_o_x + uhs_mu_3_o_z
-        uhs_N_2_o_y = uhs_mu_2_o_y + uhs_c_3_t*uhs_mu_3_o_x - uhs_mu_3_o_y*uhs_s_3
-        uhs_N_2_o_z = uhs_mu_2_o_z + uhs_c_3_t*uhs_mu_3_o_y + uhs_mu_3_o_x*uhs_s_3
-        # (uhs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        uhs_G_o_t = inv_uhs_root_2*uhs_N_2_o_z
-        uhs_G_o_t_2 = (
-        inv_uhs_v_1_r0_y*(uhs_G_o_t*uhs_v_1_r0_x + uhs_N_2_o_y*uhs_c_2 - uhs_N_2_o_x*uhs_s_2)
+        uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
+        uhs_N_2_o_in_axes2_y = (
+        uhs_mu_2_o_in_axes2_y + uhs_e_2_in_axes3_y*uhs_mu_3_o_in_axes3_x -
+            uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y
+        )
+        uhs_N_2_o_in_axes2_z = (
+        uhs_mu_2_o_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_mu_3_o_in_axes3_y
+        )
+        # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        uhs_d_Gamma_2_t = (
+        inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy + uhs_e_2_in_axes3_x*(uhs_Jc_2_t_3 +
+            uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x) + uhs_e_2_in_axes3_y*(uhs_Jc_2_t +
+            uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_y))
+        )
+        uhs_d_Gamma_2_in_axes2_z = (
+        inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_in_axes1_xz - uhs_d_Gamma_2_t*uhs_v_1_in_axes2_y)
+        )
+        uhs_d_Gamma_2_in_axes2_x = inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz - uhs_h_3_in_axes2_y
+        uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x
+        uhs_d_Gamma_2_in_axes3_y = (
+        uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_y - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
+        )
+        # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_xz
+        uhs_d_Gamma_1_t_2 = (
+        uhs_c_2*(uhs_Jc_2_in_axes2_xy*uhs_s_2 + uhs_c_2*(uhs_J_2_in_spec2_zz +
+            uhs_Jc_2_t_2*uhs_e_2_in_axes3_y - uhs_Jc_2_t_4*uhs_e_2_in_axes3_x)) +
+            uhs_s_2*(uhs_Jc_2_in_axes2_xx*uhs_s_2 + uhs_Jc_2_in_axes2_xy*uhs_c_2) -
+            uhs_d_Gamma_1_t*uhs_v_1_in_axes2_y
+        )
+        uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
+        uhs_d_Gamma_1_in_axes1_z = uhs_c_2*uhs_d_Gamma_1_t + uhs_d_Gamma_1_t_3*uhs_s_2
+        uhs_d_Gamma_1_in_axes1_x = (
+        inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 + uhs_h_3_in_axes2_y*uhs_s_2 -
+            uhs_c_2*uhs_h_3_in_spec3_x
+        )
+        uhs_d_Gamma_1_in_axes1_y = (
+        uhs_c_2*uhs_d_Gamma_1_t_3 + uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y +
+            uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_t*uhs_s_2
+        )
+        uhs_d_Gamma_1_in_axes3_z = (
+        uhs_c_2*uhs_d_Gamma_1_in_axes1_y + uhs_d_Gamma_1_in_axes1_z*uhs_s_2
+        )
+        uhs_d_Gamma_1_t_4 = uhs_c_2*uhs_d_Gamma_1_in_axes1_z - uhs_d_Gamma_1_in_axes1_y*uhs_s_2
+        uhs_d_Gamma_1_in_axes3_y = (
+        uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_y - uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x
+        )
+        # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        uhs_d_c_in_axes3_xx = (
+        uhs_h_3_in_spec3_z*uhs_s_2*uhs_w_1_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_x) -
+            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_x +
+            uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_y) -
+            uhs_w_2_in_axes3_x*(uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_y +
+            uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_x)
+        )
+        uhs_d_c_in_axes3_xy = (
+        uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x
+            - uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_y)
+        )
+        uhs_d_c_in_axes3_xz = (
+        uhs_d_phi_3_t - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
+            uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x
+        )
+        uhs_d_c_in_axes3_yz = (
+        -uhs_d_phi_3_in_axes3_yz - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
+            uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y
         )
         # (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        uhs_c_o_x = (
-        uhs_G_o_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) - uhs_B_3_o_xy*uhs_h_3_z -
-            uhs_B_3_o_xz*uhs_h_3_x - uhs_G_o_t*uhs_c_3_t
+        uhs_c_o_t = inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z
+        uhs_c_o_t_2 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_c_o_t*uhs_v_1_in_axes2_y - uhs_N_2_o_in_axes2_x*uhs_s_2 -
+            uhs_N_2_o_in_axes2_y*uhs_c_2)
         )
-        uhs_c_o_y = (
-        uhs_G_o_t*uhs_s_3 + uhs_G_o_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t + uhs_W_3_t_3) -
-            uhs_B_3_o_yx*uhs_h_3_y - uhs_B_3_o_yz*uhs_h_3_x
+        uhs_c_o_in_axes3_x = (
+        uhs_c_o_t_2*uhs_e_2_in_axes3_x + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
+            uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x -
+            uhs_c_o_t*uhs_e_2_in_axes3_y
         )
-        uhs_c_o_z = (
-        uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_z - uhs_B_3_o_zx*uhs_h_3_y -
-            uhs_B_3_o_zy*uhs_h_3_z
+        uhs_c_o_in_axes3_y = (
+        uhs_c_o_t*uhs_e_2_in_axes3_x + uhs_c_o_t_2*uhs_e_2_in_axes3_y +
+            uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_o_t) -
+            uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
         )
+        uhs_c_o_in_axes3_z = (
+        uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z -
+            uhs_B_3_o_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_zy*uhs_h_3_in_spec3_z
+        )
+        # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
+        uhs_Q_t = (
+        uhs_d_c_in_axes3_xx + uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
+            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y +
+            uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y)
+        )
+        uhs_Q_t_2 = 0.5*uhs_Q_t
+        uhs_Q_t_3 = uhs_d_G_in_axes3_zz + uhs_d_c_in_axes3_xx
+        uhs_Q_t_4 = 0.5*uhs_Q_t_3
+        uhs_Q_t_5 = (
+        axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_x*uhs_d_c_in_axes3_yz -
+            axis_y_uhs_axes3_x*uhs_Q_t_2
+        )
+        uhs_Q_t_6 = (
+        axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_y*uhs_d_c_in_axes3_yz -
+            axis_y_uhs_axes3_y*uhs_Q_t_2
+        )
+        uhs_Q_t_7 = (
+        axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_z*uhs_d_c_in_axes3_yz -
+            axis_y_uhs_axes3_z*uhs_Q_t_2
+        )
+        uhs_Q_t_8 = axis_z_uhs_axes3_x*uhs_Q_t_4 - axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xz
+        uhs_Q_t_9 = axis_z_uhs_axes3_y*uhs_Q_t_4 - axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xz
+        uhs_Q_t_10 = axis_z_uhs_axes3_z*uhs_Q_t_4 - axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz
+        uhs_Q_t_11 = axis_y_uhs_axes3_x*uhs_Q_t_5 - axis_z_uhs_axes3_x*uhs_Q_t_8
+        uhs_Q_xx = -2.0*uhs_Q_t_11 - uhs_d_c_in_axes3_xx
+        uhs_Q_xy = (
+        axis_z_uhs_axes3_x*uhs_Q_t_9 + axis_z_uhs_axes3_y*uhs_Q_t_8 - axis_y_uhs_axes3_x*uhs_Q_t_6
+            - axis_y_uhs_axes3_y*uhs_Q_t_5
+        )
+        uhs_Q_xz = (
+        axis_z_uhs_axes3_x*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_8 -
+            axis_y_uhs_axes3_x*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_5
+        )
+        uhs_Q_t_12 = axis_y_uhs_axes3_y*uhs_Q_t_6 - axis_z_uhs_axes3_y*uhs_Q_t_9
+        uhs_Q_yy = -2.0*uhs_Q_t_12 - uhs_d_c_in_axes3_xx
+        uhs_Q_yz = (
+        axis_z_uhs_axes3_y*uhs_Q_t_10 + axis_z_uhs_axes3_z*uhs_Q_t_9 -
+            axis_y_uhs_axes3_y*uhs_Q_t_7 - axis_y_uhs_axes3_z*uhs_Q_t_6
+        )
+        uhs_Q_t_13 = axis_y_uhs_axes3_z*uhs_Q_t_7 - axis_z_uhs_axes3_z*uhs_Q_t_10
+        uhs_Q_zz = -2.0*uhs_Q_t_13 - uhs_d_c_in_axes3_xx
         # (uhs-U) velocity and gravity terms of the leg force
-        uhs_U_in_base_x = (
-        -axis_x_uhs_axes3_x*uhs_c_o_x - axis_y_uhs_axes3_in_base_x*uhs_c_o_y -
-            uhs_axis_z_x*uhs_c_o_z
+        uhs_U_x = (
+        -axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y -
+            axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z
         )
-        uhs_U_in_base_y = (
-        -axis_x_uhs_axes3_y*uhs_c_o_x - axis_y_uhs_axes3_in_base_y*uhs_c_o_y -
-            uhs_axis_z_y*uhs_c_o_z
+        uhs_U_y = (
+        -axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y -
+            axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z
         )
-        uhs_U_in_base_z = (
-        -axis_x_uhs_axes3_z*uhs_c_o_x - axis_y_uhs_axes3_in_base_z*uhs_c_o_y -
-            uhs_axis_z_z*uhs_c_o_z
+        uhs_U_z = (
+        -axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y -
+            axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z
         )
+        # (M_ta) coupling block of M
+        uhs_M_ta_t = -uhs_Q_xy*uhs_q_z
+        uhs_M_ta_t_2 = uhs_Q_xz*uhs_q_y
+        uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2
+        uhs_M_ta_t_4 = uhs_Q_xx*uhs_q_z - uhs_Q_xz*uhs_q_x
+        uhs_M_ta_t_5 = uhs_Q_xy*uhs_q_x - uhs_Q_xx*uhs_q_y
+        uhs_M_ta_t_6 = uhs_Q_yz*uhs_q_y - uhs_Q_yy*uhs_q_z
+        uhs_M_ta_t_7 = uhs_Q_yz*uhs_q_x
+        uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7
+        uhs_M_ta_t_9 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y
+        uhs_M_ta_t_10 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z
+        uhs_M_ta_t_11 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x
+        uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2
+        # (M_aa) rotational block of M
+        uhs_M_aa_t = uhs_M_ta_t_10*uhs_q_y - uhs_M_ta_t_6*uhs_q_z
+        uhs_M_aa_t_2 = uhs_M_ta_t_11*uhs_q_y + uhs_M_ta_t_8*uhs_q_z
+        uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_y - uhs_M_ta_t_9*uhs_q_z
+        uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_z - uhs_M_ta_t_11*uhs_q_x
+        uhs_M_aa_t_5 = uhs_M_ta_t_5*uhs_q_z - uhs_M_ta_t_12*uhs_q_x
+        uhs_M_aa_t_6 = uhs_M_ta_t_9*uhs_q_x - uhs_M_ta_t_5*uhs_q_y
         # (Z_a) rotational part of Z
-        uhs_Z_a_t = uhs_U_in_base_z*uhs_q_in_base_y - uhs_U_in_base_y*uhs_q_in_base_z
-        uhs_Z_a_t_2 = uhs_U_in_base_x*uhs_q_in_base_z - uhs_U_in_base_z*uhs_q_in_base_x
-        uhs_Z_a_t_3 = uhs_U_in_base_y*uhs_q_in_base_x - uhs_U_in_base_x*uhs_q_in_base_y
-        # (uhs-w_3) reciprocal vector 3
-        uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x
-        uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y
-        uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z
+        uhs_Z_a_t = uhs_U_z*uhs_q_y - uhs_U_y*uhs_q_z
+        uhs_Z_a_t_2 = uhs_U_x*uhs_q_z - uhs_U_z*uhs_q_x
+        uhs_Z_a_t_3 = uhs_U_y*uhs_q_x - uhs_U_x*uhs_q_y
         # (uhs-H_a_3) moment of the column's unit force about the platform origin
-        uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2
-        uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3
-        uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t
+        uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y
+        uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
+        uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
-        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
-            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
-            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
+        ok & m.every(leg, (abs(uhs_h_3_t_6) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_h_3_t_8) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        uhs_Q_t_12, uhs_Q_t_13, uhs_Q_t_14, uhs_Q_t_16, uhs_Q_t_17, uhs_Q_t_19, uhs_M_ta_t_3,
+        uhs_Q_xx, uhs_Q_xy, uhs_Q_xz, uhs_Q_yy, uhs_Q_yz, uhs_Q_zz, uhs_M_ta_t_3,
             uhs_M_ta_t_4, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_8, uhs_M_ta_t_9,
             uhs_M_ta_t_10, uhs_M_ta_t_11, uhs_M_ta_t_12, uhs_M_aa_t, uhs_M_aa_t_2,
-            uhs_M_aa_t_3, uhs_M_aa_t_4, uhs_M_aa_t_5, uhs_M_aa_t_6, uhs_U_in_base_x,
-            uhs_U_in_base_y, uhs_U_in_base_z, uhs_Z_a_t, uhs_Z_a_t_2, uhs_Z_a_t_3,
+            uhs_M_aa_t_3, uhs_M_aa_t_4, uhs_M_aa_t_5, uhs_M_aa_t_6, uhs_U_x, uhs_U_y, uhs_U_z,
+            uhs_Z_a_t, uhs_Z_a_t_2, uhs_Z_a_t_3,
         ))
-        out_H[_H_uhs[0][leg]] = uhs_w_3_t
-        out_H[_H_uhs[1][leg]] = uhs_w_3_t_2
-        out_H[_H_uhs[2][leg]] = uhs_w_3_t_3
+        # (uhs-w_3) reciprocal vector 3
+        out_H[_H_uhs[0][leg]] = uhs_w_3_x
+        out_H[_H_uhs[1][leg]] = uhs_w_3_y
+        out_H[_H_uhs[2][leg]] = uhs_w_3_z
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_uhs[3][leg]] = uhs_H_a_3_x
         out_H[_H_uhs[4][leg]] = uhs_H_a_3_y
         out_H[_H_uhs[5][leg]] = uhs_H_a_3_z
     (
-    total_uhs_xx, total_uhs_xy, total_uhs_xz, total_uhs_yy, total_uhs_yz, total_uhs_zz,
-        total_uhs_xx_2, total_uhs_xy_2, total_uhs_xz_2, total_uhs_yx, total_uhs_yy_2,
-        total_uhs_yz_2, total_uhs_zx, total_uhs_zy, total_uhs_zz_2, total_uhs_xx_3,
-        total_uhs_xy_3, total_uhs_xz_3, total_uhs_yy_3, total_uhs_yz_3, total_uhs_zz_3,
-        total_uhs_x, total_uhs_y, total_uhs_z, total_uhs_x_2, total_uhs_y_2, total_uhs_z_2,
+    M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_xx, M_ta_uhs_xy,
+        M_ta_uhs_xz, M_ta_uhs_yx, M_ta_t, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_ta_zz,
+        M_aa_uhs_xx, M_aa_uhs_xy, M_aa_uhs_xz, M_aa_uhs_yy, M_aa_uhs_yz, M_aa_uhs_zz, Z_t_uhs_x,
+        Z_t_uhs_y, Z_t_uhs_z, Z_a_uhs_x, Z_a_uhs_y, Z_a_uhs_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_uhs_xx
-    M_tt_yy = m_star - total_uhs_yy
-    M_tt_zz = m_star - total_uhs_zz
+    M_tt_xx = M_tt_uhs_xx + m_star
+    M_tt_yy = M_tt_uhs_yy + m_star
+    M_tt_zz = M_tt_uhs_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_uhs_xy_2
-    M_ta_xz = total_uhs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_uhs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_uhs_yz_2
-    M_ta_zx = h_star_in_base_y + total_uhs_zx
-    M_ta_zy = -h_star_in_base_x - total_uhs_zy
+    M_ta_xy = M_ta_uhs_xy + h_star_z
+    M_ta_xz = M_ta_uhs_xz - h_star_y
+    M_ta_yx = M_ta_uhs_yx - h_star_z
+    M_ta_yz = M_ta_uhs_yz + h_star_x
+    M_ta_zx = M_ta_uhs_zx + h_star_y
+    M_ta_zy = M_ta_uhs_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_uhs_xx_3
-    M_aa_xy = J_star_t_9 + total_uhs_xy_3
-    M_aa_xz = J_star_t_10 - total_uhs_xz_3
-    M_aa_yy = J_star_t_13 - total_uhs_yy_3
-    M_aa_yz = J_star_t_15 + total_uhs_yz_3
-    M_aa_zz = J_star_t_17 - total_uhs_zz_3
+    M_aa_xx = J_star_xx + M_aa_uhs_xx
+    M_aa_xy = J_star_xy + M_aa_uhs_xy
+    M_aa_xz = J_star_xz + M_aa_uhs_xz
+    M_aa_yy = J_star_yy + M_aa_uhs_yy
+    M_aa_yz = J_star_yz + M_aa_uhs_yz
+    M_aa_zz = J_star_zz + M_aa_uhs_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_uhs_x
-    Z_t_y = Z_p_y + total_uhs_y
-    Z_t_z = Z_p_z + total_uhs_z
+    Z_t_x = Z_p_x + Z_t_uhs_x
+    Z_t_y = Z_p_y + Z_t_uhs_y
+    Z_t_z = Z_p_z + Z_t_uhs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_uhs_x_2
-    Z_a_y = Z_q_in_base_y + total_uhs_y_2
-    Z_a_z = Z_q_in_base_z + total_uhs_z_2
+    Z_a_x = Z_a_uhs_x + Z_q_x
+    Z_a_y = Z_a_uhs_y + Z_q_y
+    Z_a_z = Z_a_uhs_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_uhs_xy
-    out_M[6] = -total_uhs_xy
-    out_M[2] = -total_uhs_xz
-    out_M[12] = -total_uhs_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_uhs_yz
-    out_M[13] = -total_uhs_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_uhs_xx_2
-    out_M[18] = total_uhs_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_uhs_yy_2
-    out_M[25] = -total_uhs_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_uhs_zz_2
-    out_M[32] = -total_uhs_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2023,9 +2138,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2039,8 +2156,9 @@ def _run_M(m, X):
     cos = m.cos
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2080,318 +2198,349 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yy, uhs_J_2_yz, uhs_J_2_zz,
-            uhs_J_3_xx, uhs_J_3_xy, uhs_J_3_xz, uhs_J_3_yy, uhs_J_3_yz, uhs_J_3_zz, uhs_Jc_2_xx,
-            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1,
-            uhs_branch_2, uhs_d_G_t, uhs_d_phi_3_t, uhs_d_phi_3_t_2, uhs_h_3_x, uhs_h_3_y,
-            uhs_h_3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
-            uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,
+        inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yy,
+            uhs_J_2_in_spec2_yz, uhs_J_2_in_spec2_zz, uhs_J_3_in_spec3_xx, uhs_J_3_in_spec3_xy,
+            uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yy, uhs_J_3_in_spec3_yz, uhs_J_3_in_spec3_zz,
+            uhs_Jc_2_in_axes2_xx, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+            uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_d_G_in_axes3_zz,
+            uhs_d_phi_3_in_axes3_yz, uhs_d_phi_3_t, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y,
+            uhs_h_3_in_spec3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
+            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
+            uhs_size_t,
         ) = k
-        # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        # (uhs-h_3) first moment of link 3 about the connection point
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
-        uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
+        uhs_h_3_t = t_x + uhs_q_x - uhs_base_point_x
+        uhs_h_3_t_2 = t_y + uhs_q_y - uhs_base_point_y
+        uhs_h_3_t_3 = t_z + uhs_q_z - uhs_base_point_z
+        uhs_h_3_t_4 = (
+        uhs_base_frame_xx*uhs_h_3_t + uhs_base_frame_yx*uhs_h_3_t_2 +
+            uhs_base_frame_zx*uhs_h_3_t_3
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
-        uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
+        uhs_h_3_t_5 = (
+        uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
+            uhs_base_frame_zy*uhs_h_3_t_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
-        # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_h_3_t_6 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_7 = (
+        uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
+            uhs_base_frame_zz*uhs_h_3_t_3
         )
-        # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
-        # (uhs-root_2) root, with the sign of the branch
-        uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
-        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
-        # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
-        # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_t = uhs_c_2*uhs_c_3_t
-        uhs_v_1_t_2 = uhs_c_2*uhs_s_3
-        uhs_v_1_t_3 = uhs_root_2*uhs_v_1_t_2
-        uhs_v_1_t_4 = uhs_root_2*uhs_v_1_t
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
-        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
-        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
-        uhs_w_1_t = uhs_s_2*uhs_s_3
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
-        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-w_1) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
-        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
-        axis_y_uhs_axes3_in_base_x = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*uhs_v_1_t_2
+        uhs_h_3_t_8 = uhs_h_3_t_6 + uhs_h_3_t_7*uhs_h_3_t_7
+        uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
+        uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
+        uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
+        uhs_e_2_in_axes3_y = sin(uhs_h_3_t_11)
+        uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
+        uhs_h_3_in_axes2_y = (
+        uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_y - uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z
         )
-        axis_y_uhs_axes3_in_base_y = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*uhs_v_1_t_2
-        )
-        axis_y_uhs_axes3_in_base_z = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*uhs_v_1_t_2
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
-        )
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_3 - uhs_s_3*uhs_v_1_t_4
-        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_4 + uhs_s_3*uhs_v_1_t_3
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
-        uhs_w_1_t_2 = inv_uhs_v_1_r0_y*uhs_s_3
-        uhs_w_1_t_3 = inv_uhs_v_1_r0_y*uhs_c_3_t
-        # (uhs-w_2) reciprocal vector 2
-        uhs_w_2_t = inv_uhs_root_2*inv_uhs_v_1_r0_y*uhs_v_1_r0_x
-        uhs__r1_x = inv_uhs_root_2*uhs_c_3_t - uhs_s_3*uhs_w_2_t
-        uhs__r1_y = -inv_uhs_root_2*uhs_s_3 - uhs_c_3_t*uhs_w_2_t
-        # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        uhs_d_alpha_3_t = uhs_s_2*uhs_w_1_t_3
-        # (uhs-L_c_3) moment about joint 3 that accelerates joint 3, per unit
-        uhs_L_c_3_r0_y = uhs_J_3_xy*uhs_s_3 + uhs_J_3_xz*uhs_c_3_t
-        # (uhs-D_1_3) inertia of joint 3 along joint 1
-        uhs_D_1_3 = uhs_J_3_xx*uhs_s_2 + uhs_J_3_xz*uhs_v_1_t_2 - uhs_J_3_xy*uhs_v_1_t
         # (uhs-J_3) inertia tensor of link 3 about the connection point
-        uhs_J_3_t = uhs_J_3_yz*uhs_s_3
-        uhs__x = uhs_J_3_yy*uhs_c_3_t - uhs_J_3_t
-        uhs_J_3_t_2 = uhs_J_3_yz*uhs_c_3_t
-        uhs__x_2 = uhs_J_3_t_2 - uhs_J_3_zz*uhs_s_3
-        # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        uhs_Jc_2_xy = uhs_J_3_xy*uhs_c_3_t - uhs_J_2_xz - uhs_J_3_xz*uhs_s_3
-        # (uhs-L_c_2) moment about joint 2 that accelerates joint 2, per unit
-        uhs_L_c_2_r0_y = (
-        uhs_s_2*(uhs_J_2_xy + uhs_L_c_3_r0_y) - uhs_c_2*(uhs__x*uhs_s_3 + uhs__x_2*uhs_c_3_t -
-            uhs_J_2_yz)
+        uhs_J_3_in_axes2_xz = (
+        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x + uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_y
         )
-        # (uhs-h_3) first moment of link 3 about the connection point
-        uhs_h_3_r1_x = uhs_c_3_t*uhs_h_3_y - uhs_h_3_z*uhs_s_3
+        # (uhs-root_1) root, with the sign of the branch
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_6)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_h_3_t_6 = 1.0/uhs_h_3_t_6
+        uhs_c_1 = -inv_uhs_h_3_t_6*uhs_h_3_t_5*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_h_3_t_6*uhs_h_3_t_4*uhs_root_1
+        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
+        inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
+        uhs_c_2 = -inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
+        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
+        uhs_s_2 = inv_uhs_h_3_t_8*uhs_h_3_t_7*uhs_h_3_t_9
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_e_2_in_axes3_y
+        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
+        uhs_v_1_in_axes3_y = -uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_y = (
+        uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_y
+        )
+        uhs_v_1_in_axes2_z = (
+        uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_y
+        )
+        # (uhs-w_1) reciprocal vector 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x
+        uhs_w_1_in_axes3_y = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_y
+        # (uhs-w_2) reciprocal vector 2
+        inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
+        uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_in_axes2_y
+        uhs_w_2_in_axes3_x = inv_uhs_h_3_t_9*uhs_e_2_in_axes3_y - uhs_e_2_in_axes3_x*uhs_w_2_t
+        uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_e_2_in_axes3_y*uhs_w_2_t
+        # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        uhs_d_alpha_3_in_axes3_zy = uhs_s_2*uhs_w_1_in_axes3_y
+        # (uhs-D_1_3) inertia of joint 3 along joint 1
+        uhs_D_1_3 = (
+        uhs_J_3_in_spec3_xx*uhs_s_2 + uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x +
+            uhs_J_3_in_spec3_xz*uhs_e_1_in_axes3_y
+        )
+        # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_y - uhs_Jc_2_t
+        uhs_Jc_2_t_3 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_y
+        uhs_Jc_2_t_4 = uhs_Jc_2_t_3 - uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_in_axes2_xy = (
+        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_y - uhs_J_2_in_spec2_xz -
+            uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x
+        )
+        uhs_Jc_2_in_axes1_xz = (
+        uhs_c_2*(uhs_Jc_2_t_2*uhs_e_2_in_axes3_x + uhs_Jc_2_t_4*uhs_e_2_in_axes3_y -
+            uhs_J_2_in_spec2_yz) + uhs_s_2*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz)
+        )
         # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         uhs_d_Gamma_2_t = (
-        inv_uhs_root_2*(uhs_J_2_yy + uhs_c_3_t*(uhs_J_3_t + uhs_J_3_zz*uhs_c_3_t) +
-            uhs_s_3*(uhs_J_3_t_2 + uhs_J_3_yy*uhs_s_3))
+        inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy + uhs_e_2_in_axes3_x*(uhs_Jc_2_t_3 +
+            uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x) + uhs_e_2_in_axes3_y*(uhs_Jc_2_t +
+            uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_y))
         )
-        uhs_d_Gamma_2_t_2 = inv_uhs_v_1_r0_y*(uhs_L_c_2_r0_y - uhs_d_Gamma_2_t*uhs_v_1_r0_x)
-        uhs_d_Gamma_2_x = inv_uhs_joint3_pitch*uhs_L_c_3_r0_y - uhs_h_3_r1_x
-        uhs_d_Gamma_2_y = uhs_d_Gamma_2_t + uhs_h_3_x
+        uhs_d_Gamma_2_in_axes2_z = (
+        inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_in_axes1_xz - uhs_d_Gamma_2_t*uhs_v_1_in_axes2_y)
+        )
+        uhs_d_Gamma_2_in_axes2_x = inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz - uhs_h_3_in_axes2_y
+        uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x
+        uhs_d_Gamma_2_in_axes3_y = (
+        uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_y - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
+        )
         # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        uhs_d_Gamma_1_t = inv_uhs_root_2*uhs_L_c_2_r0_y
+        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_xz
         uhs_d_Gamma_1_t_2 = (
-        uhs_s_2*(uhs_Jc_2_xx*uhs_s_2 - uhs_Jc_2_xy*uhs_c_2) - uhs_c_2*(uhs_Jc_2_xy*uhs_s_2 -
-            uhs_c_2*(uhs_J_2_zz + uhs__x*uhs_c_3_t - uhs__x_2*uhs_s_3)) -
-            uhs_d_Gamma_1_t*uhs_v_1_r0_x
+        uhs_c_2*(uhs_Jc_2_in_axes2_xy*uhs_s_2 + uhs_c_2*(uhs_J_2_in_spec2_zz +
+            uhs_Jc_2_t_2*uhs_e_2_in_axes3_y - uhs_Jc_2_t_4*uhs_e_2_in_axes3_x)) +
+            uhs_s_2*(uhs_Jc_2_in_axes2_xx*uhs_s_2 + uhs_Jc_2_in_axes2_xy*uhs_c_2) -
+            uhs_d_Gamma_1_t*uhs_v_1_in_axes2_y
         )
         uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
-        uhs__r0_y = uhs_d_Gamma_1_t_3*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_t
-        uhs_d_Gamma_1_x = (
-        inv_uhs_v_1_r0_y*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_x + uhs_h_3_r1_x*uhs_s_2
+        uhs_d_Gamma_1_in_axes1_z = uhs_c_2*uhs_d_Gamma_1_t + uhs_d_Gamma_1_t_3*uhs_s_2
+        uhs_d_Gamma_1_in_axes1_x = (
+        inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 + uhs_h_3_in_axes2_y*uhs_s_2 -
+            uhs_c_2*uhs_h_3_in_spec3_x
         )
-        uhs_d_Gamma_1_y = (
-        uhs_c_3_t*uhs_h_3_z + uhs_h_3_y*uhs_s_3 - uhs_c_2*uhs_d_Gamma_1_t_3 -
-            uhs_d_Gamma_1_t*uhs_s_2
+        uhs_d_Gamma_1_in_axes1_y = (
+        uhs_c_2*uhs_d_Gamma_1_t_3 + uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y +
+            uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_t*uhs_s_2
         )
-        uhs_d_Gamma_1_r1_x = uhs__r0_y*uhs_s_2 - uhs_c_2*uhs_d_Gamma_1_y
-        uhs_d_Gamma_1_r1_y = -uhs__r0_y*uhs_c_2 - uhs_d_Gamma_1_y*uhs_s_2
-        uhs_d_Gamma_1_r3_y = uhs_c_3_t*uhs_d_Gamma_1_x - uhs_d_Gamma_1_r1_y*uhs_s_3
-        # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        uhs_d_Gamma_2_r1_y = uhs_c_3_t*uhs_d_Gamma_2_t_2 - uhs_d_Gamma_2_y*uhs_s_3
+        uhs_d_Gamma_1_in_axes3_z = (
+        uhs_c_2*uhs_d_Gamma_1_in_axes1_y + uhs_d_Gamma_1_in_axes1_z*uhs_s_2
+        )
+        uhs_d_Gamma_1_t_4 = uhs_c_2*uhs_d_Gamma_1_in_axes1_z - uhs_d_Gamma_1_in_axes1_y*uhs_s_2
+        uhs_d_Gamma_1_in_axes3_y = (
+        uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_y - uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x
+        )
         # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        uhs_d_c_xx = (
-        uhs_h_3_z*uhs_s_2*uhs_w_1_t_2 - uhs__r1_x*(uhs_c_3_t*uhs_d_Gamma_2_y +
-            uhs_d_Gamma_2_t_2*uhs_s_3) - uhs_h_3_x*(uhs__r1_x*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_2)
-            - uhs_w_1_t_2*(uhs_c_3_t*uhs_d_Gamma_1_r1_y + uhs_d_Gamma_1_x*uhs_s_3)
+        uhs_d_c_in_axes3_xx = (
+        uhs_h_3_in_spec3_z*uhs_s_2*uhs_w_1_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x +
+            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_x) -
+            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_x +
+            uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_y) -
+            uhs_w_2_in_axes3_x*(uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_y +
+            uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_x)
         )
-        uhs_d_c_xy = (
-        uhs_d_alpha_3_t*uhs_h_3_z - uhs__r1_x*uhs_d_Gamma_2_r1_y - uhs_d_Gamma_1_r3_y*uhs_w_1_t_2
-            - uhs_h_3_x*(uhs__r1_y*uhs_c_3_t + uhs_v_1_t_2*uhs_w_1_t_3)
+        uhs_d_c_in_axes3_xy = (
+        uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x
+            - uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_y)
         )
-        uhs_d_c_xz = uhs_d_phi_3_t - uhs__r1_x*uhs_d_Gamma_2_x - uhs_d_Gamma_1_r1_x*uhs_w_1_t_2
-        uhs_d_c_yz = -uhs_d_phi_3_t_2 - uhs__r1_y*uhs_d_Gamma_2_x - uhs_d_Gamma_1_r1_x*uhs_w_1_t_3
+        uhs_d_c_in_axes3_xz = (
+        uhs_d_phi_3_t - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
+            uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_x
+        )
+        uhs_d_c_in_axes3_yz = (
+        -uhs_d_phi_3_in_axes3_yz - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_y -
+            uhs_d_Gamma_2_in_axes2_x*uhs_w_2_in_axes3_y
+        )
         # (uhs-Q) inertia of the leg at the connection point, without the mass gathered there
-        uhs_Q_t = (
-        uhs_d_c_xx + uhs__r1_y*uhs_d_Gamma_2_r1_y + uhs_d_Gamma_1_r3_y*uhs_w_1_t_3 +
-            uhs_d_alpha_3_t*uhs_h_3_y - uhs_h_3_x*(uhs__r1_y*uhs_s_3 - uhs_v_1_t*uhs_w_1_t_3)
+        axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
+        axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
+        axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
+        uhs_Q_t = uhs_e_2_in_axes3_x*uhs_s_2
+        uhs_Q_t_2 = uhs_c_1*uhs_e_2_in_axes3_y - uhs_Q_t*uhs_s_1
+        uhs_Q_t_3 = uhs_Q_t*uhs_c_1 + uhs_e_2_in_axes3_y*uhs_s_1
+        axis_y_uhs_axes3_x = (
+        uhs_Q_t_2*uhs_base_frame_xx + uhs_Q_t_3*uhs_base_frame_xy +
+            uhs_base_frame_xz*uhs_e_1_in_axes3_y
         )
-        uhs_Q_t_2 = 0.5*uhs_Q_t
-        uhs_Q_t_3 = uhs_d_G_t + uhs_d_c_xx
-        uhs_Q_t_4 = 0.5*uhs_Q_t_3
-        uhs_Q_t_5 = (
-        axis_x_uhs_axes3_x*uhs_d_c_xy + uhs_axis_z_x*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_x*uhs_Q_t_2
+        axis_y_uhs_axes3_y = (
+        uhs_Q_t_2*uhs_base_frame_yx + uhs_Q_t_3*uhs_base_frame_yy +
+            uhs_base_frame_yz*uhs_e_1_in_axes3_y
         )
-        uhs_Q_t_6 = (
-        axis_x_uhs_axes3_y*uhs_d_c_xy + uhs_axis_z_y*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_y*uhs_Q_t_2
+        axis_y_uhs_axes3_z = (
+        uhs_Q_t_2*uhs_base_frame_zx + uhs_Q_t_3*uhs_base_frame_zy +
+            uhs_base_frame_zz*uhs_e_1_in_axes3_y
         )
-        uhs_Q_t_7 = (
-        axis_x_uhs_axes3_z*uhs_d_c_xy + uhs_axis_z_z*uhs_d_c_yz -
-            axis_y_uhs_axes3_in_base_z*uhs_Q_t_2
+        axis_x_uhs_axes3_x = (
+        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
         )
-        uhs_Q_t_8 = uhs_Q_t_4*uhs_axis_z_x - axis_x_uhs_axes3_x*uhs_d_c_xz
-        uhs_Q_t_9 = uhs_Q_t_4*uhs_axis_z_y - axis_x_uhs_axes3_y*uhs_d_c_xz
-        uhs_Q_t_10 = uhs_Q_t_4*uhs_axis_z_z - axis_x_uhs_axes3_z*uhs_d_c_xz
-        uhs_Q_t_11 = axis_y_uhs_axes3_in_base_x*uhs_Q_t_5 - uhs_Q_t_8*uhs_axis_z_x
-        uhs_Q_t_12 = 2.0*uhs_Q_t_11 + uhs_d_c_xx
-        uhs_Q_t_13 = (
-        axis_y_uhs_axes3_in_base_x*uhs_Q_t_6 + axis_y_uhs_axes3_in_base_y*uhs_Q_t_5 -
-            uhs_Q_t_8*uhs_axis_z_y - uhs_Q_t_9*uhs_axis_z_x
+        axis_x_uhs_axes3_y = (
+        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
         )
-        uhs_Q_t_14 = (
-        axis_y_uhs_axes3_in_base_x*uhs_Q_t_7 + axis_y_uhs_axes3_in_base_z*uhs_Q_t_5 -
-            uhs_Q_t_10*uhs_axis_z_x - uhs_Q_t_8*uhs_axis_z_z
+        axis_x_uhs_axes3_z = (
+        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
         )
-        uhs_Q_t_15 = axis_y_uhs_axes3_in_base_y*uhs_Q_t_6 - uhs_Q_t_9*uhs_axis_z_y
-        uhs_Q_t_16 = 2.0*uhs_Q_t_15 + uhs_d_c_xx
-        uhs_Q_t_17 = (
-        axis_y_uhs_axes3_in_base_y*uhs_Q_t_7 + axis_y_uhs_axes3_in_base_z*uhs_Q_t_6 -
-            uhs_Q_t_10*uhs_axis_z_y - uhs_Q_t_9*uhs_axis_z_z
+        uhs_Q_t_4 = (
+        uhs_d_c_in_axes3_xx + uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_y +
+            uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_y +
+            uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_y -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_x*uhs_w_1_in_axes3_y +
+            uhs_e_2_in_axes3_x*uhs_w_2_in_axes3_y)
         )
-        uhs_Q_t_18 = axis_y_uhs_axes3_in_base_z*uhs_Q_t_7 - uhs_Q_t_10*uhs_axis_z_z
-        uhs_Q_t_19 = 2.0*uhs_Q_t_18 + uhs_d_c_xx
+        uhs_Q_t_5 = 0.5*uhs_Q_t_4
+        uhs_Q_t_6 = uhs_d_G_in_axes3_zz + uhs_d_c_in_axes3_xx
+        uhs_Q_t_7 = 0.5*uhs_Q_t_6
+        uhs_Q_t_8 = (
+        axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_x*uhs_d_c_in_axes3_yz -
+            axis_y_uhs_axes3_x*uhs_Q_t_5
+        )
+        uhs_Q_t_9 = (
+        axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_y*uhs_d_c_in_axes3_yz -
+            axis_y_uhs_axes3_y*uhs_Q_t_5
+        )
+        uhs_Q_t_10 = (
+        axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xy + axis_z_uhs_axes3_z*uhs_d_c_in_axes3_yz -
+            axis_y_uhs_axes3_z*uhs_Q_t_5
+        )
+        uhs_Q_t_11 = axis_z_uhs_axes3_x*uhs_Q_t_7 - axis_x_uhs_axes3_x*uhs_d_c_in_axes3_xz
+        uhs_Q_t_12 = axis_z_uhs_axes3_y*uhs_Q_t_7 - axis_x_uhs_axes3_y*uhs_d_c_in_axes3_xz
+        uhs_Q_t_13 = axis_z_uhs_axes3_z*uhs_Q_t_7 - axis_x_uhs_axes3_z*uhs_d_c_in_axes3_xz
+        uhs_Q_t_14 = axis_y_uhs_axes3_x*uhs_Q_t_8 - axis_z_uhs_axes3_x*uhs_Q_t_11
+        uhs_Q_xx = -2.0*uhs_Q_t_14 - uhs_d_c_in_axes3_xx
+        uhs_Q_xy = (
+        axis_z_uhs_axes3_x*uhs_Q_t_12 + axis_z_uhs_axes3_y*uhs_Q_t_11 -
+            axis_y_uhs_axes3_x*uhs_Q_t_9 - axis_y_uhs_axes3_y*uhs_Q_t_8
+        )
+        uhs_Q_xz = (
+        axis_z_uhs_axes3_x*uhs_Q_t_13 + axis_z_uhs_axes3_z*uhs_Q_t_11 -
+            axis_y_uhs_axes3_x*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_8
+        )
+        uhs_Q_t_15 = axis_y_uhs_axes3_y*uhs_Q_t_9 - axis_z_uhs_axes3_y*uhs_Q_t_12
+        uhs_Q_yy = -2.0*uhs_Q_t_15 - uhs_d_c_in_axes3_xx
+        uhs_Q_yz = (
+        axis_z_uhs_axes3_y*uhs_Q_t_13 + axis_z_uhs_axes3_z*uhs_Q_t_12 -
+            axis_y_uhs_axes3_y*uhs_Q_t_10 - axis_y_uhs_axes3_z*uhs_Q_t_9
+        )
+        uhs_Q_t_16 = axis_y_uhs_axes3_z*uhs_Q_t_10 - axis_z_uhs_axes3_z*uhs_Q_t_13
+        uhs_Q_zz = -2.0*uhs_Q_t_16 - uhs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        uhs_M_ta_t = uhs_Q_t_13*uhs_q_in_base_z
-        uhs_M_ta_t_2 = uhs_Q_t_14*uhs_q_in_base_y
-        uhs_M_ta_t_3 = uhs_M_ta_t - uhs_M_ta_t_2
-        uhs_M_ta_t_4 = uhs_Q_t_12*uhs_q_in_base_z - uhs_Q_t_14*uhs_q_in_base_x
-        uhs_M_ta_t_5 = uhs_Q_t_12*uhs_q_in_base_y - uhs_Q_t_13*uhs_q_in_base_x
-        uhs_M_ta_t_6 = uhs_Q_t_16*uhs_q_in_base_z - uhs_Q_t_17*uhs_q_in_base_y
-        uhs_M_ta_t_7 = uhs_Q_t_17*uhs_q_in_base_x
-        uhs_M_ta_t_8 = uhs_M_ta_t - uhs_M_ta_t_7
-        uhs_M_ta_t_9 = uhs_Q_t_13*uhs_q_in_base_y - uhs_Q_t_16*uhs_q_in_base_x
-        uhs_M_ta_t_10 = uhs_Q_t_17*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_y
-        uhs_M_ta_t_11 = uhs_Q_t_14*uhs_q_in_base_z - uhs_Q_t_19*uhs_q_in_base_x
+        uhs_M_ta_t = -uhs_Q_xy*uhs_q_z
+        uhs_M_ta_t_2 = uhs_Q_xz*uhs_q_y
+        uhs_M_ta_t_3 = uhs_M_ta_t + uhs_M_ta_t_2
+        uhs_M_ta_t_4 = uhs_Q_xx*uhs_q_z - uhs_Q_xz*uhs_q_x
+        uhs_M_ta_t_5 = uhs_Q_xy*uhs_q_x - uhs_Q_xx*uhs_q_y
+        uhs_M_ta_t_6 = uhs_Q_yz*uhs_q_y - uhs_Q_yy*uhs_q_z
+        uhs_M_ta_t_7 = uhs_Q_yz*uhs_q_x
+        uhs_M_ta_t_8 = uhs_M_ta_t + uhs_M_ta_t_7
+        uhs_M_ta_t_9 = uhs_Q_yy*uhs_q_x - uhs_Q_xy*uhs_q_y
+        uhs_M_ta_t_10 = uhs_Q_zz*uhs_q_y - uhs_Q_yz*uhs_q_z
+        uhs_M_ta_t_11 = uhs_Q_xz*uhs_q_z - uhs_Q_zz*uhs_q_x
         uhs_M_ta_t_12 = uhs_M_ta_t_7 - uhs_M_ta_t_2
         # (M_aa) rotational block of M
-        uhs_M_aa_t = uhs_M_ta_t_6*uhs_q_in_base_z - uhs_M_ta_t_10*uhs_q_in_base_y
-        uhs_M_aa_t_2 = uhs_M_ta_t_8*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_y
-        uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_in_base_y + uhs_M_ta_t_9*uhs_q_in_base_z
-        uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_in_base_z - uhs_M_ta_t_11*uhs_q_in_base_x
-        uhs_M_aa_t_5 = uhs_M_ta_t_12*uhs_q_in_base_x + uhs_M_ta_t_5*uhs_q_in_base_z
-        uhs_M_aa_t_6 = uhs_M_ta_t_5*uhs_q_in_base_y - uhs_M_ta_t_9*uhs_q_in_base_x
+        uhs_M_aa_t = uhs_M_ta_t_10*uhs_q_y - uhs_M_ta_t_6*uhs_q_z
+        uhs_M_aa_t_2 = uhs_M_ta_t_11*uhs_q_y + uhs_M_ta_t_8*uhs_q_z
+        uhs_M_aa_t_3 = uhs_M_ta_t_12*uhs_q_y - uhs_M_ta_t_9*uhs_q_z
+        uhs_M_aa_t_4 = uhs_M_ta_t_4*uhs_q_z - uhs_M_ta_t_11*uhs_q_x
+        uhs_M_aa_t_5 = uhs_M_ta_t_5*uhs_q_z - uhs_M_ta_t_12*uhs_q_x
+        uhs_M_aa_t_6 = uhs_M_ta_t_9*uhs_q_x - uhs_M_ta_t_5*uhs_q_y
         ok = (
-        ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
-            (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
-            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
+        ok & m.every(leg, (abs(uhs_h_3_t_6) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
+            (abs(uhs_h_3_t_8) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) >
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        uhs_Q_t_12, uhs_Q_t_13, uhs_Q_t_14, uhs_Q_t_16, uhs_Q_t_17, uhs_Q_t_19, uhs_M_ta_t_3,
+        uhs_Q_xx, uhs_Q_xy, uhs_Q_xz, uhs_Q_yy, uhs_Q_yz, uhs_Q_zz, uhs_M_ta_t_3,
             uhs_M_ta_t_4, uhs_M_ta_t_5, uhs_M_ta_t_6, uhs_M_ta_t_8, uhs_M_ta_t_9,
             uhs_M_ta_t_10, uhs_M_ta_t_11, uhs_M_ta_t_12, uhs_M_aa_t, uhs_M_aa_t_2,
             uhs_M_aa_t_3, uhs_M_aa_t_4, uhs_M_aa_t_5, uhs_M_aa_t_6,
         ))
     (
-    total_uhs_xx, total_uhs_xy, total_uhs_xz, total_uhs_yy, total_uhs_yz, total_uhs_zz,
-        total_uhs_xx_2, total_uhs_xy_2, total_uhs_xz_2, total_uhs_yx, total_uhs_yy_2,
-        total_uhs_yz_2, total_uhs_zx, total_uhs_zy, total_uhs_zz_2, total_uhs_xx_3,
-        total_uhs_xy_3, total_uhs_xz_3, total_uhs_yy_3, total_uhs_yz_3, total_uhs_zz_3,
+    M_tt_uhs_xx, M_tt_xy, M_tt_xz, M_tt_uhs_yy, M_tt_yz, M_tt_uhs_zz, M_ta_xx, M_ta_uhs_xy,
+        M_ta_uhs_xz, M_ta_uhs_yx, M_ta_t, M_ta_uhs_yz, M_ta_uhs_zx, M_ta_uhs_zy, M_ta_zz,
+        M_aa_uhs_xx, M_aa_uhs_xy, M_aa_uhs_xz, M_aa_uhs_yy, M_aa_uhs_yz, M_aa_uhs_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_uhs_xx
-    M_tt_yy = m_star - total_uhs_yy
-    M_tt_zz = m_star - total_uhs_zz
+    M_tt_xx = M_tt_uhs_xx + m_star
+    M_tt_yy = M_tt_uhs_yy + m_star
+    M_tt_zz = M_tt_uhs_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_uhs_xy_2
-    M_ta_xz = total_uhs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_uhs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_uhs_yz_2
-    M_ta_zx = h_star_in_base_y + total_uhs_zx
-    M_ta_zy = -h_star_in_base_x - total_uhs_zy
+    M_ta_xy = M_ta_uhs_xy + h_star_z
+    M_ta_xz = M_ta_uhs_xz - h_star_y
+    M_ta_yx = M_ta_uhs_yx - h_star_z
+    M_ta_yz = M_ta_uhs_yz + h_star_x
+    M_ta_zx = M_ta_uhs_zx + h_star_y
+    M_ta_zy = M_ta_uhs_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_uhs_xx_3
-    M_aa_xy = J_star_t_9 + total_uhs_xy_3
-    M_aa_xz = J_star_t_10 - total_uhs_xz_3
-    M_aa_yy = J_star_t_13 - total_uhs_yy_3
-    M_aa_yz = J_star_t_15 + total_uhs_yz_3
-    M_aa_zz = J_star_t_17 - total_uhs_zz_3
+    M_aa_xx = J_star_xx + M_aa_uhs_xx
+    M_aa_xy = J_star_xy + M_aa_uhs_xy
+    M_aa_xz = J_star_xz + M_aa_uhs_xz
+    M_aa_yy = J_star_yy + M_aa_uhs_yy
+    M_aa_yz = J_star_yz + M_aa_uhs_yz
+    M_aa_zz = J_star_zz + M_aa_uhs_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_uhs_xy
-    out_M[6] = -total_uhs_xy
-    out_M[2] = -total_uhs_xz
-    out_M[12] = -total_uhs_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_uhs_yz
-    out_M[13] = -total_uhs_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_uhs_xx_2
-    out_M[18] = total_uhs_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_uhs_yy_2
-    out_M[25] = -total_uhs_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_uhs_zz_2
-    out_M[32] = -total_uhs_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2411,8 +2560,9 @@ def _run_Z(m, X, V):
     cos = m.cos
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2465,59 +2615,79 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
-            uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
-            uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
-            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
-            uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x,
-            uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
-            uhs_size_t,
+        inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
+            uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
+            uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
+            uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
+            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
+            uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
+            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
+            uhs_joint3_offset_x, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
+            uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
         # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
         # (uhs-px_1) component along the reference direction
         uhs_px_1 = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
@@ -2530,293 +2700,321 @@ def _run_Z(m, X, V):
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
+        uhs_c_3 = sin(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_t = uhs_c_2*uhs_s_3
-        uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t
-        uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
-        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
-        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
-        uhs_w_1_t = uhs_s_2*uhs_s_3
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
-        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-w_1) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
-        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
-        axis_y_uhs_axes3_in_base_x = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*uhs_v_1_t
-        )
-        axis_y_uhs_axes3_in_base_y = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*uhs_v_1_t
-        )
-        axis_y_uhs_axes3_in_base_z = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*uhs_v_1_t
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
-        )
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3
-        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        uhs_s_3 = cos(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
-        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
-        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
-        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x
         uhs_S_dot_x = t_dot_x + uhs_S_dot_t
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
-        uhs_S_dot_r0_x = (
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
+        uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        # (uhs-qd_1) rate of joint 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
         )
-        uhs_S_dot_r0_y = (
+        uhs_qd_1_t_2 = (
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_S_dot_r0_z = (
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        # (uhs-qd_2) rate of joint 2
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
-        # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
-        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
         uhs_qd_2 = (
-        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
+        inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
         )
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_t = uhs_qd_1*uhs_s_2
-        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
+        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
-        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3
+        uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        # (uhs-W_2) centripetal tensor of link 2
+        uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
+        uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
+        uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y
+        uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x
+        uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y
+        uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y
+        uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2
         # (uhs-omega_3) angular velocity of link 3
-        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
-        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3
-        uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3
+        uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3
+        # (uhs-W_3) centripetal tensor of link 3
+        uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
+        uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
         # (uhs-u_1) centripetal acceleration of the connection point
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
+        uhs_u_1_t = uhs_s_2*uhs_s_3
+        uhs_u_1_t_2 = uhs_c_1*uhs_c_3 - uhs_s_1*uhs_u_1_t
+        uhs_u_1_t_3 = uhs_c_1*uhs_u_1_t + uhs_c_3*uhs_s_1
+        axis_y_uhs_axes3_x = (
+        uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
+            uhs_base_frame_xz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_y = (
+        uhs_base_frame_yx*uhs_u_1_t_2 + uhs_base_frame_yy*uhs_u_1_t_3 +
+            uhs_base_frame_yz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_z = (
+        uhs_base_frame_zx*uhs_u_1_t_2 + uhs_base_frame_zy*uhs_u_1_t_3 +
+            uhs_base_frame_zz*uhs_e_1_in_axes3_y
+        )
+        axis_x_uhs_axes3_x = (
+        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
+        )
+        axis_x_uhs_axes3_y = (
+        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
+        )
+        axis_x_uhs_axes3_z = (
+        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
+        )
         uhs_u_1_x = omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
         uhs_u_1_y = omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
         uhs_u_1_z = omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
-        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2
-        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
-        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
-        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
-        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t
-        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y
-        # (uhs-W_2) centripetal tensor of link 2
-        uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t
-        uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2
-        uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2
-        uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2
-        # (uhs-W_3) centripetal tensor of link 3
-        uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x
-        uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y
-        uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z
-        uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y
-        uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z
-        uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z
-        uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2
-        # (uhs-bias) acceleration of the connection point at zero joint accelerations
-        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
-        uhs_bias_x = (
-        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
-            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y)
-        )
-        uhs_bias_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
-            uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x
-        )
-        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
-        # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_tip_x = (
+        uhs_u_1_in_axes3_x = (
         axis_x_uhs_axes3_x*uhs_u_1_x + axis_x_uhs_axes3_y*uhs_u_1_y + axis_x_uhs_axes3_z*uhs_u_1_z
         )
-        uhs_u_1_tip_y = (
-        axis_y_uhs_axes3_in_base_x*uhs_u_1_x + axis_y_uhs_axes3_in_base_y*uhs_u_1_y +
-            axis_y_uhs_axes3_in_base_z*uhs_u_1_z
+        uhs_u_1_in_axes3_y = (
+        axis_y_uhs_axes3_x*uhs_u_1_x + axis_y_uhs_axes3_y*uhs_u_1_y + axis_y_uhs_axes3_z*uhs_u_1_z
         )
-        uhs_u_1_tip_z = uhs_axis_z_x*uhs_u_1_x + uhs_axis_z_y*uhs_u_1_y + uhs_axis_z_z*uhs_u_1_z
+        uhs_u_1_in_axes3_z = (
+        axis_z_uhs_axes3_x*uhs_u_1_x + axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z
+        )
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
+        uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_in_axes3_x = (
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
+        )
+        uhs_bias_in_axes3_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
+            uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        )
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        uhs_rel_o_x = uhs_u_1_tip_x - uhs_bias_x
-        uhs_rel_o_y = uhs_u_1_tip_y - uhs_bias_y
-        uhs_rel_o_z = uhs_u_1_tip_z - uhs_bias_z
-        # (uhs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        uhs_qdd_1_o = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_o_y + uhs_rel_o_x*uhs_s_3)
+        uhs_rel_o_in_axes3_x = uhs_u_1_in_axes3_x - uhs_bias_in_axes3_x
+        uhs_rel_o_in_axes3_y = uhs_u_1_in_axes3_y - uhs_bias_in_axes3_y
+        uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
+        # (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        uhs_qdd_1_o = (
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_o_in_axes3_y + uhs_rel_o_in_axes3_x*uhs_s_3)
+        )
+        # (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
         uhs_qdd_2_o = (
-        inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_r0_x + uhs_rel_o_y*uhs_s_3 - uhs_c_3_t*uhs_rel_o_x)
+        -inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_in_axes2_y + uhs_rel_o_in_axes3_y*uhs_s_3 -
+            uhs_c_3*uhs_rel_o_in_axes3_x)
         )
         # (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        uhs_alpha_1_o_t = uhs_qdd_1_o*uhs_s_2
-        uhs_alpha_1_o_t_2 = uhs_c_2*uhs_qdd_1_o
+        uhs_alpha_1_o_in_axes2_x = uhs_qdd_1_o*uhs_s_2
+        uhs_alpha_1_o_in_axes2_y = uhs_c_2*uhs_qdd_1_o
         # (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        uhs_alpha_2_o_x = uhs_alpha_1_o_t - uhs_zeta_2_x
-        uhs_alpha_2_o_y = -uhs_alpha_1_o_t_2 - uhs_zeta_2_y
+        uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x
+        uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz
+        # (uhs-B_2_o) remainder of the acceleration tensor of link 2
+        uhs_B_2_o_in_axes2_xy = uhs_W_2_in_axes2_xy - uhs_qdd_2_o
+        uhs_B_2_o_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2_o
+        uhs_B_2_o_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y
+        uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x
         # (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        uhs_alpha_3_o_x = uhs_zeta_3_x + uhs_alpha_2_o_y*uhs_c_3_t - uhs_qdd_2_o*uhs_s_3
-        uhs_alpha_3_o_y = -uhs_zeta_3_y - uhs_alpha_2_o_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2_o
-        uhs_alpha_3_o_z = uhs_alpha_2_o_x + inv_uhs_joint3_pitch*uhs_rel_o_z
+        uhs_alpha_3_o_in_axes3_x = (
+        uhs_zeta_3_in_axes3_x + uhs_alpha_2_o_in_axes2_y*uhs_c_3 + uhs_qdd_2_o*uhs_s_3
+        )
+        uhs_alpha_3_o_in_axes3_y = (
+        uhs_zeta_3_in_axes3_y + uhs_c_3*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*uhs_s_3
+        )
+        uhs_alpha_3_o_in_axes3_z = (
+        uhs_alpha_2_o_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z
+        )
         # (uhs-B_3_o) remainder of the acceleration tensor of link 3
-        uhs_B_3_o_xy = uhs_W_3_xy - uhs_alpha_3_o_z
-        uhs_B_3_o_xz = uhs_W_3_xz + uhs_alpha_3_o_y
-        uhs_B_3_o_yx = uhs_W_3_xy + uhs_alpha_3_o_z
-        uhs_B_3_o_yz = uhs_W_3_yz - uhs_alpha_3_o_x
-        uhs_B_3_o_zx = uhs_W_3_xz - uhs_alpha_3_o_y
-        uhs_B_3_o_zy = uhs_W_3_yz + uhs_alpha_3_o_x
+        uhs_B_3_o_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_o_in_axes3_z
+        uhs_B_3_o_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_o_in_axes3_y
+        uhs_B_3_o_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_o_in_axes3_z
+        uhs_B_3_o_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_o_in_axes3_x
+        uhs_B_3_o_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_o_in_axes3_y
+        uhs_B_3_o_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_o_in_axes3_x
         # (uhs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_o_x = (
-        uhs_u_1_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+        uhs_acc_3_o_in_axes3_x = (
+        uhs_u_1_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
             axis_x_uhs_axes3_z*gravity_z
         )
-        uhs_acc_3_o_y = (
-        uhs_u_1_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
-            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z
+        uhs_acc_3_o_in_axes3_y = (
+        uhs_u_1_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
+            axis_y_uhs_axes3_z*gravity_z
         )
-        uhs_acc_3_o_z = (
-        uhs_u_1_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y - gravity_z*uhs_axis_z_z
+        uhs_acc_3_o_in_axes3_z = (
+        uhs_u_1_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
+            axis_z_uhs_axes3_z*gravity_z
         )
         # (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        uhs_mu_3_o_x = (
-        uhs_B_3_o_yx*uhs_J_3_xy + uhs_B_3_o_zy*uhs_Sigma_3_yy + uhs_J_3_xz*(uhs_W_3_t_2 -
-            uhs_W_3_t_3) + uhs_acc_3_o_z*uhs_h_3_z - uhs_B_3_o_yz*uhs_Sigma_3_zz -
-            uhs_B_3_o_zx*uhs_J_3_yz - uhs_acc_3_o_y*uhs_h_3_x
+        uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
+        uhs_mu_3_o_in_axes3_x = (
+        uhs_B_3_o_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_o_in_axes3_zy*uhs_Sigma_3_in_axes3_yy
+            + uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_o_t) +
+            uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_z -
+            uhs_B_3_o_in_axes3_yz*uhs_Sigma_3_in_axes3_zz -
+            uhs_B_3_o_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_x
         )
-        uhs_mu_3_o_y = (
-        uhs_B_3_o_xz*uhs_Sigma_3_zz + uhs_B_3_o_zy*uhs_J_3_yz + uhs_acc_3_o_x*uhs_h_3_x -
-            uhs_B_3_o_xy*uhs_J_3_xz - uhs_B_3_o_zx*uhs_Sigma_3_xx - uhs_J_3_xy*(uhs_W_3_t -
-            uhs_W_3_t_3) - uhs_acc_3_o_z*uhs_h_3_y
+        uhs_mu_3_o_in_axes3_y = (
+        uhs_B_3_o_in_axes3_xz*uhs_Sigma_3_in_axes3_zz + uhs_B_3_o_in_axes3_zy*uhs_J_3_in_spec3_yz
+            + uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_x -
+            uhs_B_3_o_in_axes3_xy*uhs_J_3_in_spec3_xz -
+            uhs_B_3_o_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
+            uhs_mu_3_o_t) - uhs_acc_3_o_in_axes3_z*uhs_h_3_in_spec3_y
         )
-        uhs_mu_3_o_z = (
-        uhs_B_3_o_xz*uhs_J_3_xz + uhs_B_3_o_yx*uhs_Sigma_3_xx + uhs_J_3_yz*(uhs_W_3_t -
-            uhs_W_3_t_2) + uhs_acc_3_o_y*uhs_h_3_y - uhs_B_3_o_xy*uhs_Sigma_3_yy -
-            uhs_B_3_o_yz*uhs_J_3_xy - uhs_acc_3_o_x*uhs_h_3_z
+        uhs_mu_3_o_in_axes3_z = (
+        uhs_B_3_o_in_axes3_xz*uhs_J_3_in_spec3_xz + uhs_B_3_o_in_axes3_yx*uhs_Sigma_3_in_axes3_xx
+            + uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2) +
+            uhs_acc_3_o_in_axes3_y*uhs_h_3_in_spec3_y -
+            uhs_B_3_o_in_axes3_xy*uhs_Sigma_3_in_axes3_yy -
+            uhs_B_3_o_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_o_in_axes3_x*uhs_h_3_in_spec3_z
         )
-        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x
-        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
-        uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y
-        uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2
-        # (uhs-B_2_o) remainder of the acceleration tensor of link 2
-        uhs_B_2_o_xy = uhs_qdd_2_o - uhs_W_2_xy
-        uhs_B_2_o_yx = -uhs_W_2_xy - uhs_qdd_2_o
-        uhs_B_2_o_zx = uhs_zeta_2_y - uhs_alpha_2_o_y
-        uhs_B_2_o_zy = uhs_alpha_2_o_x - uhs_zeta_2_x
         # (uhs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_o_x = (
-        uhs_B_2_o_yx*uhs_J_2_xy + uhs_B_2_o_zx*uhs_J_2_xz + uhs_B_2_o_zy*uhs_Sigma_2_yy +
-            uhs_Sigma_2_zz*uhs_alpha_1_o_t + uhs_g_r1_x*uhs_h_2_z + uhs_g_r3_y*uhs_h_2_y -
-            uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3)
+        uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_mu_2_t_3*uhs_s_2
+        uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_o_t_4*uhs_s_2
+        uhs_mu_2_o_in_axes2_x = (
+        uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
+            uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y
+            + uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_o_t_2 -
+            uhs_mu_2_o_t_3)
         )
-        uhs_mu_2_o_y = (
-        uhs_B_2_o_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x - uhs_B_2_o_zx*uhs_Sigma_2_xx -
-            uhs_B_2_o_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t - uhs_W_2_t_3) -
-            uhs_Sigma_2_zz*uhs_alpha_1_o_t_2 - uhs_g_r3_x*uhs_h_2_y
+        uhs_mu_2_o_in_axes2_y = (
+        uhs_B_2_o_in_axes2_xy*uhs_J_2_in_spec2_yz +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_o_in_axes2_y + uhs_g_in_axes2_z*uhs_h_2_in_spec2_x
+            - uhs_B_2_o_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_o_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_o_t -
+            uhs_mu_2_o_t_3) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y
         )
-        uhs_mu_2_o_z = (
-        uhs_B_2_o_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_o_t + uhs_J_2_yz*uhs_alpha_1_o_t_2 -
-            uhs_B_2_o_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t - uhs_W_2_t_2) -
-            uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x
+        uhs_mu_2_o_in_axes2_z = (
+        uhs_B_2_o_in_axes2_yx*uhs_Sigma_2_in_axes2_xx +
+            uhs_J_2_in_spec2_xy*uhs_alpha_1_o_in_axes2_x -
+            uhs_B_2_o_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_o_t -
+            uhs_mu_2_o_t_2) - uhs_J_2_in_spec2_yz*uhs_alpha_1_o_in_axes2_y -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         )
         # (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        uhs_N_2_o_x = uhs_mu_2_o_x + uhs_mu_3_o_z
-        uhs_N_2_o_y = uhs_mu_2_o_y + uhs_c_3_t*uhs_mu_3_o_x - uhs_mu_3_o_y*uhs_s_3
-        uhs_N_2_o_z = uhs_mu_2_o_z + uhs_c_3_t*uhs_mu_3_o_y + uhs_mu_3_o_x*uhs_s_3
-        # (uhs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        uhs_G_o_t = inv_uhs_root_2*uhs_N_2_o_z
-        uhs_G_o_t_2 = (
-        inv_uhs_v_1_r0_y*(uhs_G_o_t*uhs_v_1_r0_x + uhs_N_2_o_y*uhs_c_2 - uhs_N_2_o_x*uhs_s_2)
+        uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
+        uhs_N_2_o_in_axes2_y = (
+        uhs_mu_2_o_in_axes2_y + uhs_c_3*uhs_mu_3_o_in_axes3_x - uhs_mu_3_o_in_axes3_y*uhs_s_3
+        )
+        uhs_N_2_o_in_axes2_z = (
+        uhs_mu_2_o_in_axes2_z + uhs_c_3*uhs_mu_3_o_in_axes3_y + uhs_mu_3_o_in_axes3_x*uhs_s_3
         )
         # (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        uhs_c_o_x = (
-        uhs_G_o_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) - uhs_B_3_o_xy*uhs_h_3_z -
-            uhs_B_3_o_xz*uhs_h_3_x - uhs_G_o_t*uhs_c_3_t
+        uhs_c_o_t = inv_uhs_root_2*uhs_N_2_o_in_axes2_z
+        uhs_c_o_t_2 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_c_o_t*uhs_v_1_in_axes2_y - uhs_N_2_o_in_axes2_x*uhs_s_2 -
+            uhs_N_2_o_in_axes2_y*uhs_c_2)
         )
-        uhs_c_o_y = (
-        uhs_G_o_t*uhs_s_3 + uhs_G_o_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t + uhs_W_3_t_3) -
-            uhs_B_3_o_yx*uhs_h_3_y - uhs_B_3_o_yz*uhs_h_3_x
+        uhs_c_o_in_axes3_x = (
+        uhs_c_o_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
+            uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x -
+            uhs_c_3*uhs_c_o_t
         )
-        uhs_c_o_z = (
-        uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_z - uhs_B_3_o_zx*uhs_h_3_y -
-            uhs_B_3_o_zy*uhs_h_3_z
+        uhs_c_o_in_axes3_y = (
+        uhs_c_3*uhs_c_o_t_2 + uhs_c_o_t*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_o_t) -
+            uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
+        )
+        uhs_c_o_in_axes3_z = (
+        uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z -
+            uhs_B_3_o_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_zy*uhs_h_3_in_spec3_z
         )
         # (uhs-U) velocity and gravity terms of the leg force
-        uhs_U_in_base_x = (
-        -axis_x_uhs_axes3_x*uhs_c_o_x - axis_y_uhs_axes3_in_base_x*uhs_c_o_y -
-            uhs_axis_z_x*uhs_c_o_z
+        uhs_U_x = (
+        -axis_x_uhs_axes3_x*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_x*uhs_c_o_in_axes3_y -
+            axis_z_uhs_axes3_x*uhs_c_o_in_axes3_z
         )
-        uhs_U_in_base_y = (
-        -axis_x_uhs_axes3_y*uhs_c_o_x - axis_y_uhs_axes3_in_base_y*uhs_c_o_y -
-            uhs_axis_z_y*uhs_c_o_z
+        uhs_U_y = (
+        -axis_x_uhs_axes3_y*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_y*uhs_c_o_in_axes3_y -
+            axis_z_uhs_axes3_y*uhs_c_o_in_axes3_z
         )
-        uhs_U_in_base_z = (
-        -axis_x_uhs_axes3_z*uhs_c_o_x - axis_y_uhs_axes3_in_base_z*uhs_c_o_y -
-            uhs_axis_z_z*uhs_c_o_z
+        uhs_U_z = (
+        -axis_x_uhs_axes3_z*uhs_c_o_in_axes3_x - axis_y_uhs_axes3_z*uhs_c_o_in_axes3_y -
+            axis_z_uhs_axes3_z*uhs_c_o_in_axes3_z
         )
         # (Z_a) rotational part of Z
-        uhs_Z_a_t = uhs_U_in_base_z*uhs_q_in_base_y - uhs_U_in_base_y*uhs_q_in_base_z
-        uhs_Z_a_t_2 = uhs_U_in_base_x*uhs_q_in_base_z - uhs_U_in_base_z*uhs_q_in_base_x
-        uhs_Z_a_t_3 = uhs_U_in_base_y*uhs_q_in_base_x - uhs_U_in_base_x*uhs_q_in_base_y
+        uhs_Z_a_t = uhs_U_z*uhs_q_y - uhs_U_y*uhs_q_z
+        uhs_Z_a_t_2 = uhs_U_x*uhs_q_z - uhs_U_z*uhs_q_x
+        uhs_Z_a_t_3 = uhs_U_y*uhs_q_x - uhs_U_x*uhs_q_y
         ok = (
         ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
-            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        uhs_U_in_base_x, uhs_U_in_base_y, uhs_U_in_base_z, uhs_Z_a_t, uhs_Z_a_t_2,
-            uhs_Z_a_t_3,
+        uhs_U_x, uhs_U_y, uhs_U_z, uhs_Z_a_t, uhs_Z_a_t_2, uhs_Z_a_t_3,
         ))
-    total_uhs_x, total_uhs_y, total_uhs_z, total_uhs_x_2, total_uhs_y_2, total_uhs_z_2 = sums
+    Z_t_uhs_x, Z_t_uhs_y, Z_t_uhs_z, Z_a_uhs_x, Z_a_uhs_y, Z_a_uhs_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_uhs_x
-    Z_t_y = Z_p_y + total_uhs_y
-    Z_t_z = Z_p_z + total_uhs_z
+    Z_t_x = Z_p_x + Z_t_uhs_x
+    Z_t_y = Z_p_y + Z_t_uhs_y
+    Z_t_z = Z_p_z + Z_t_uhs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_uhs_x_2
-    Z_a_y = Z_q_in_base_y + total_uhs_y_2
-    Z_a_z = Z_q_in_base_z + total_uhs_z_2
+    Z_a_x = Z_a_uhs_x + Z_q_x
+    Z_a_y = Z_a_uhs_y + Z_q_y
+    Z_a_z = Z_a_uhs_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2873,18 +3071,18 @@ def _run_H(m, X):
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
         # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
         # (uhs-px_1) component along the reference direction
         uhs_px_1 = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
@@ -2896,31 +3094,32 @@ def _run_H(m, X):
         # (uhs-rho2_1) squared amplitude
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_root_2 = 1.0/uhs_root_2
         # (uhs-w_3) reciprocal vector 3
-        uhs_w_3_t = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x
-        uhs_w_3_t_2 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y
-        uhs_w_3_t_3 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_w_3_x = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x
+        uhs_w_3_y = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y
+        uhs_w_3_z = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z
         # (uhs-H_a_3) moment of the column's unit force about the platform origin
-        uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2
-        uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3
-        uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t
+        uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y
+        uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
+        uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
         ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
             _TOLERANCE * uhs_size))
         )
-        out_H[_H_uhs[0][leg]] = uhs_w_3_t
-        out_H[_H_uhs[1][leg]] = uhs_w_3_t_2
-        out_H[_H_uhs[2][leg]] = uhs_w_3_t_3
+        # (uhs-w_3) reciprocal vector 3
+        out_H[_H_uhs[0][leg]] = uhs_w_3_x
+        out_H[_H_uhs[1][leg]] = uhs_w_3_y
+        out_H[_H_uhs[2][leg]] = uhs_w_3_z
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_uhs[3][leg]] = uhs_H_a_3_x
         out_H[_H_uhs[4][leg]] = uhs_H_a_3_y
         out_H[_H_uhs[5][leg]] = uhs_H_a_3_z
@@ -2934,8 +3133,9 @@ def _run_required(m, X, V, A):
     cos = m.cos
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3001,91 +3201,106 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
-            uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
-            uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
-            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
-            uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x,
-            uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
-            uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z, uhs_size,
-            uhs_size_t,
+        inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
+            uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
+            uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
+            uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
+            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
+            uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
+            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
+            uhs_joint3_offset_x, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
+            uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
         # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
         # (uhs-px_1) component along the reference direction
         uhs_px_1 = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
@@ -3098,310 +3313,336 @@ def _run_required(m, X, V, A):
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
+        uhs_c_3 = sin(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_t = uhs_c_2*uhs_s_3
-        uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t
-        uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
-        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
-        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
-        uhs_w_1_t = uhs_s_2*uhs_s_3
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
-        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-w_1) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
-        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
-        axis_y_uhs_axes3_in_base_x = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*uhs_v_1_t
-        )
-        axis_y_uhs_axes3_in_base_y = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*uhs_v_1_t
-        )
-        axis_y_uhs_axes3_in_base_z = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*uhs_v_1_t
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
-        )
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3
-        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        uhs_s_3 = cos(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
-        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
-        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
-        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x
         uhs_S_dot_x = t_dot_x + uhs_S_dot_t
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
-        uhs_S_dot_r0_x = (
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
+        uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        # (uhs-w_3) reciprocal vector 3
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
+        uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
+        uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
+        uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
+        # (uhs-qd_1) rate of joint 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
         )
-        uhs_S_dot_r0_y = (
+        uhs_qd_1_t_2 = (
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_S_dot_r0_z = (
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        # (uhs-qd_2) rate of joint 2
+        uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
-        # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
-        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
         uhs_qd_2 = (
-        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
+        inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
         )
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_t = uhs_qd_1*uhs_s_2
-        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
+        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
-        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
-        # (uhs-omega_3) angular velocity of link 3
-        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
-        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3
-        uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3
-        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2
-        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
-        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
-        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
-        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t
-        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3
+        uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
-        uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t
-        uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2
-        uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2
-        uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2
+        uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
+        uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
+        uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y
+        uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x
+        uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y
+        uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y
+        uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2
+        # (uhs-omega_3) angular velocity of link 3
+        uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3
         # (uhs-W_3) centripetal tensor of link 3
-        uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x
-        uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y
-        uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z
-        uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y
-        uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z
-        uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z
-        uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2
-        # (uhs-bias) acceleration of the connection point at zero joint accelerations
-        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
-        uhs_bias_x = (
-        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
-            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y)
-        )
-        uhs_bias_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
-            uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x
-        )
-        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
-        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x
-        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
-        uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y
-        uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2
-        # (uhs-w_3) reciprocal vector 3
-        uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x
-        uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y
-        uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z
-        # (uhs-H_a_3) moment of the column's unit force about the platform origin
-        uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2
-        uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3
-        uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t
+        uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
+        uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
         # (uhs-a_p) acceleration of the connection point without its centripetal part
-        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y
-        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z
-        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x
+        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y
+        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z
+        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x
         # (uhs-S_ddot) acceleration of the connection point
+        uhs_S_ddot_t = uhs_s_2*uhs_s_3
+        uhs_S_ddot_t_2 = uhs_c_1*uhs_c_3 - uhs_S_ddot_t*uhs_s_1
+        uhs_S_ddot_t_3 = uhs_S_ddot_t*uhs_c_1 + uhs_c_3*uhs_s_1
+        axis_y_uhs_axes3_x = (
+        uhs_S_ddot_t_2*uhs_base_frame_xx + uhs_S_ddot_t_3*uhs_base_frame_xy +
+            uhs_base_frame_xz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_y = (
+        uhs_S_ddot_t_2*uhs_base_frame_yx + uhs_S_ddot_t_3*uhs_base_frame_yy +
+            uhs_base_frame_yz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_z = (
+        uhs_S_ddot_t_2*uhs_base_frame_zx + uhs_S_ddot_t_3*uhs_base_frame_zy +
+            uhs_base_frame_zz*uhs_e_1_in_axes3_y
+        )
+        axis_x_uhs_axes3_x = (
+        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
+        )
+        axis_x_uhs_axes3_y = (
+        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
+        )
+        axis_x_uhs_axes3_z = (
+        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
+        )
         uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
         uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
         uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
-        uhs_S_ddot_tip_x = (
+        uhs_S_ddot_in_axes3_x = (
         axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
             axis_x_uhs_axes3_z*uhs_S_ddot_z
         )
-        uhs_S_ddot_tip_y = (
-        axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x + axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y +
-            axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z
+        uhs_S_ddot_in_axes3_y = (
+        axis_y_uhs_axes3_x*uhs_S_ddot_x + axis_y_uhs_axes3_y*uhs_S_ddot_y +
+            axis_y_uhs_axes3_z*uhs_S_ddot_z
         )
-        uhs_S_ddot_tip_z = (
-        uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y + uhs_S_ddot_z*uhs_axis_z_z
+        uhs_S_ddot_in_axes3_z = (
+        axis_z_uhs_axes3_x*uhs_S_ddot_x + axis_z_uhs_axes3_y*uhs_S_ddot_y +
+            axis_z_uhs_axes3_z*uhs_S_ddot_z
         )
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
+        uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_in_axes3_x = (
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
+        )
+        uhs_bias_in_axes3_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
+            uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        )
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
-        uhs_rel_x = uhs_S_ddot_tip_x - uhs_bias_x
-        uhs_rel_y = uhs_S_ddot_tip_y - uhs_bias_y
-        uhs_rel_z = uhs_S_ddot_tip_z - uhs_bias_z
+        uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x
+        uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y
+        uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
-        uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3)
-        uhs_qdd_2 = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 - uhs_c_3_t*uhs_rel_x)
+        uhs_qdd_1 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y + uhs_rel_in_axes3_x*uhs_s_3)
         )
-        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_x = (
-        uhs_S_ddot_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
-            axis_x_uhs_axes3_z*gravity_z
-        )
-        uhs_acc_3_y = (
-        uhs_S_ddot_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
-            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z
-        )
-        uhs_acc_3_z = (
-        uhs_S_ddot_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y -
-            gravity_z*uhs_axis_z_z
+        # (uhs-qdd_2) acceleration of joint 2
+        uhs_qdd_2_t = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y + uhs_rel_in_axes3_y*uhs_s_3 -
+            uhs_c_3*uhs_rel_in_axes3_x)
         )
         # (uhs-alpha_1) angular acceleration of link 1
-        uhs_alpha_1_t = uhs_qdd_1*uhs_s_2
-        uhs_alpha_1_t_2 = uhs_c_2*uhs_qdd_1
+        uhs_alpha_1_in_axes2_x = uhs_qdd_1*uhs_s_2
+        uhs_alpha_1_in_axes2_y = uhs_c_2*uhs_qdd_1
         # (uhs-alpha_2) angular acceleration of link 2
-        uhs_alpha_2_x = uhs_alpha_1_t - uhs_zeta_2_x
-        uhs_alpha_2_y = -uhs_alpha_1_t_2 - uhs_zeta_2_y
-        # (uhs-alpha_3) angular acceleration of link 3
-        uhs_alpha_3_x = uhs_zeta_3_x + uhs_alpha_2_y*uhs_c_3_t - uhs_qdd_2*uhs_s_3
-        uhs_alpha_3_y = -uhs_zeta_3_y - uhs_alpha_2_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2
-        uhs_alpha_3_z = uhs_alpha_2_x + inv_uhs_joint3_pitch*uhs_rel_z
-        # (uhs-B_3) acceleration tensor of link 3
-        uhs_B_3_xy = uhs_W_3_xy - uhs_alpha_3_z
-        uhs_B_3_xz = uhs_W_3_xz + uhs_alpha_3_y
-        uhs_B_3_yx = uhs_W_3_xy + uhs_alpha_3_z
-        uhs_B_3_yz = uhs_W_3_yz - uhs_alpha_3_x
-        uhs_B_3_zx = uhs_W_3_xz - uhs_alpha_3_y
-        uhs_B_3_zy = uhs_W_3_yz + uhs_alpha_3_x
-        # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        uhs_mu_3_x = (
-        uhs_B_3_yx*uhs_J_3_xy + uhs_B_3_zy*uhs_Sigma_3_yy + uhs_J_3_xz*(uhs_W_3_t_2 - uhs_W_3_t_3)
-            + uhs_acc_3_z*uhs_h_3_z - uhs_B_3_yz*uhs_Sigma_3_zz - uhs_B_3_zx*uhs_J_3_yz -
-            uhs_acc_3_y*uhs_h_3_x
-        )
-        uhs_mu_3_y = (
-        uhs_B_3_xz*uhs_Sigma_3_zz + uhs_B_3_zy*uhs_J_3_yz + uhs_acc_3_x*uhs_h_3_x -
-            uhs_B_3_xy*uhs_J_3_xz - uhs_B_3_zx*uhs_Sigma_3_xx - uhs_J_3_xy*(uhs_W_3_t -
-            uhs_W_3_t_3) - uhs_acc_3_z*uhs_h_3_y
-        )
-        uhs_mu_3_z = (
-        uhs_B_3_xz*uhs_J_3_xz + uhs_B_3_yx*uhs_Sigma_3_xx + uhs_J_3_yz*(uhs_W_3_t - uhs_W_3_t_2) +
-            uhs_acc_3_y*uhs_h_3_y - uhs_B_3_xy*uhs_Sigma_3_yy - uhs_B_3_yz*uhs_J_3_xy -
-            uhs_acc_3_x*uhs_h_3_z
-        )
+        uhs_alpha_2_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_in_axes2_x
+        uhs_alpha_2_in_axes2_y = uhs_alpha_1_in_axes2_y - uhs_W_2_in_axes2_xz
         # (uhs-B_2) acceleration tensor of link 2
-        uhs_B_2_xy = uhs_qdd_2 - uhs_W_2_xy
-        uhs_B_2_yx = -uhs_W_2_xy - uhs_qdd_2
-        uhs_B_2_zx = uhs_zeta_2_y - uhs_alpha_2_y
-        uhs_B_2_zy = uhs_alpha_2_x - uhs_zeta_2_x
+        uhs_B_2_in_axes2_xy = uhs_W_2_in_axes2_xy + uhs_qdd_2_t
+        uhs_B_2_in_axes2_yx = uhs_W_2_in_axes2_xy - uhs_qdd_2_t
+        uhs_B_2_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_in_axes2_y
+        uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x
+        # (uhs-alpha_3) angular acceleration of link 3
+        uhs_alpha_3_in_axes3_x = (
+        uhs_zeta_3_in_axes3_x + uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2_t*uhs_s_3
+        )
+        uhs_alpha_3_in_axes3_y = (
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_s_3 - uhs_c_3*uhs_qdd_2_t
+        )
+        uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
+        # (uhs-B_3) acceleration tensor of link 3
+        uhs_B_3_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z
+        uhs_B_3_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_in_axes3_y
+        uhs_B_3_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_in_axes3_z
+        uhs_B_3_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_in_axes3_x
+        uhs_B_3_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y
+        uhs_B_3_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x
+        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
+        uhs_acc_3_in_axes3_x = (
+        uhs_S_ddot_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+            axis_x_uhs_axes3_z*gravity_z
+        )
+        uhs_acc_3_in_axes3_y = (
+        uhs_S_ddot_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
+            axis_y_uhs_axes3_z*gravity_z
+        )
+        uhs_acc_3_in_axes3_z = (
+        uhs_S_ddot_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
+            axis_z_uhs_axes3_z*gravity_z
+        )
+        # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
+        uhs_mu_3_in_axes3_x = (
+        uhs_B_3_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_in_axes3_zy*uhs_Sigma_3_in_axes3_yy +
+            uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t) +
+            uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_yz*uhs_Sigma_3_in_axes3_zz
+            - uhs_B_3_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_x
+        )
+        uhs_mu_3_in_axes3_y = (
+        uhs_B_3_in_axes3_xz*uhs_Sigma_3_in_axes3_zz + uhs_B_3_in_axes3_zy*uhs_J_3_in_spec3_yz +
+            uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_x - uhs_B_3_in_axes3_xy*uhs_J_3_in_spec3_xz -
+            uhs_B_3_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
+            uhs_mu_3_t) - uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_y
+        )
+        uhs_mu_3_in_axes3_z = (
+        uhs_B_3_in_axes3_xz*uhs_J_3_in_spec3_xz + uhs_B_3_in_axes3_yx*uhs_Sigma_3_in_axes3_xx +
+            uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2) +
+            uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_xy*uhs_Sigma_3_in_axes3_yy
+            - uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z
+        )
         # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_x = (
-        uhs_B_2_yx*uhs_J_2_xy + uhs_B_2_zx*uhs_J_2_xz + uhs_B_2_zy*uhs_Sigma_2_yy +
-            uhs_Sigma_2_zz*uhs_alpha_1_t + uhs_g_r1_x*uhs_h_2_z + uhs_g_r3_y*uhs_h_2_y -
-            uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3)
+        uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_mu_2_t_3*uhs_s_2
+        uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_t_7*uhs_s_2
+        uhs_mu_2_in_axes2_x = (
+        uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz +
+            uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y +
+            uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 -
+            uhs_mu_2_t_6)
         )
-        uhs_mu_2_y = (
-        uhs_B_2_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x - uhs_B_2_zx*uhs_Sigma_2_xx -
-            uhs_B_2_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t - uhs_W_2_t_3) -
-            uhs_Sigma_2_zz*uhs_alpha_1_t_2 - uhs_g_r3_x*uhs_h_2_y
+        uhs_mu_2_in_axes2_y = (
+        uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y +
+            uhs_g_in_axes2_z*uhs_h_2_in_spec2_x - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 -
+            uhs_mu_2_t_6) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y
         )
-        uhs_mu_2_z = (
-        uhs_B_2_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_t + uhs_J_2_yz*uhs_alpha_1_t_2 -
-            uhs_B_2_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t - uhs_W_2_t_2) -
-            uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x
+        uhs_mu_2_in_axes2_z = (
+        uhs_B_2_in_axes2_yx*uhs_Sigma_2_in_axes2_xx + uhs_J_2_in_spec2_xy*uhs_alpha_1_in_axes2_x -
+            uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 -
+            uhs_mu_2_t_5) - uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         )
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        uhs_N_2_x = uhs_mu_2_x + uhs_mu_3_z
-        uhs_N_2_y = uhs_mu_2_y + uhs_c_3_t*uhs_mu_3_x - uhs_mu_3_y*uhs_s_3
-        uhs_N_2_z = uhs_mu_2_z + uhs_c_3_t*uhs_mu_3_y + uhs_mu_3_x*uhs_s_3
-        # (uhs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        uhs_G_t = inv_uhs_root_2*uhs_N_2_z
-        uhs_G_t_2 = (
-        inv_uhs_v_1_r0_y*(uhs_G_t*uhs_v_1_r0_x + uhs_N_2_y*uhs_c_2 - uhs_N_2_x*uhs_s_2)
+        uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z
+        uhs_N_2_in_axes2_y = (
+        uhs_mu_2_in_axes2_y + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
+        )
+        uhs_N_2_in_axes2_z = (
+        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_y + uhs_mu_3_in_axes3_x*uhs_s_3
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
+        uhs_c_t = inv_uhs_root_2*uhs_N_2_in_axes2_z
+        uhs_c_t_2 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_c_t*uhs_v_1_in_axes2_y - uhs_N_2_in_axes2_x*uhs_s_2 -
+            uhs_N_2_in_axes2_y*uhs_c_2)
+        )
+        uhs_c_in_axes3_x = (
+        uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t) -
+            uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x -
+            uhs_c_3*uhs_c_t
+        )
+        uhs_c_in_axes3_y = (
+        uhs_c_3*uhs_c_t_2 + uhs_c_t*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) -
+            uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
+        )
+        uhs_c_in_axes3_z = (
+        uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
+            uhs_B_3_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_zy*uhs_h_3_in_spec3_z
+        )
         uhs_c_x = (
-        uhs_G_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) - uhs_B_3_xy*uhs_h_3_z -
-            uhs_B_3_xz*uhs_h_3_x - uhs_G_t*uhs_c_3_t
+        axis_x_uhs_axes3_x*uhs_c_in_axes3_x + axis_y_uhs_axes3_x*uhs_c_in_axes3_y +
+            axis_z_uhs_axes3_x*uhs_c_in_axes3_z
         )
         uhs_c_y = (
-        uhs_G_t*uhs_s_3 + uhs_G_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t + uhs_W_3_t_3) -
-            uhs_B_3_yx*uhs_h_3_y - uhs_B_3_yz*uhs_h_3_x
+        axis_x_uhs_axes3_y*uhs_c_in_axes3_x + axis_y_uhs_axes3_y*uhs_c_in_axes3_y +
+            axis_z_uhs_axes3_y*uhs_c_in_axes3_z
         )
         uhs_c_z = (
-        uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_z - uhs_B_3_zx*uhs_h_3_y -
-            uhs_B_3_zy*uhs_h_3_z
-        )
-        uhs_c_in_base_x = (
-        axis_x_uhs_axes3_x*uhs_c_x + axis_y_uhs_axes3_in_base_x*uhs_c_y + uhs_axis_z_x*uhs_c_z
-        )
-        uhs_c_in_base_y = (
-        axis_x_uhs_axes3_y*uhs_c_x + axis_y_uhs_axes3_in_base_y*uhs_c_y + uhs_axis_z_y*uhs_c_z
-        )
-        uhs_c_in_base_z = (
-        axis_x_uhs_axes3_z*uhs_c_x + axis_y_uhs_axes3_in_base_z*uhs_c_y + uhs_axis_z_z*uhs_c_z
+        axis_x_uhs_axes3_z*uhs_c_in_axes3_x + axis_y_uhs_axes3_z*uhs_c_in_axes3_y +
+            axis_z_uhs_axes3_z*uhs_c_in_axes3_z
         )
         # (R_a) moment that actuators and external wrench must give
-        uhs_R_a_t = uhs_c_in_base_z*uhs_q_in_base_y - uhs_c_in_base_y*uhs_q_in_base_z
-        uhs_R_a_t_2 = uhs_c_in_base_x*uhs_q_in_base_z - uhs_c_in_base_z*uhs_q_in_base_x
-        uhs_R_a_t_3 = uhs_c_in_base_y*uhs_q_in_base_x - uhs_c_in_base_x*uhs_q_in_base_y
+        uhs_R_a_t = uhs_c_y*uhs_q_z - uhs_c_z*uhs_q_y
+        uhs_R_a_t_2 = uhs_c_z*uhs_q_x - uhs_c_x*uhs_q_z
+        uhs_R_a_t_3 = uhs_c_x*uhs_q_y - uhs_c_y*uhs_q_x
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
+        uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y
+        uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
+        uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
         ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
-            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
-        uhs_c_in_base_x, uhs_c_in_base_y, uhs_c_in_base_z, uhs_R_a_t, uhs_R_a_t_2,
-            uhs_R_a_t_3,
+        uhs_c_x, uhs_c_y, uhs_c_z, uhs_R_a_t, uhs_R_a_t_2, uhs_R_a_t_3,
         ))
-        out_H[_H_uhs[0][leg]] = uhs_w_3_t
-        out_H[_H_uhs[1][leg]] = uhs_w_3_t_2
-        out_H[_H_uhs[2][leg]] = uhs_w_3_t_3
+        # (uhs-w_3) reciprocal vector 3
+        out_H[_H_uhs[0][leg]] = uhs_w_3_x
+        out_H[_H_uhs[1][leg]] = uhs_w_3_y
+        out_H[_H_uhs[2][leg]] = uhs_w_3_z
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_uhs[3][leg]] = uhs_H_a_3_x
         out_H[_H_uhs[4][leg]] = uhs_H_a_3_y
         out_H[_H_uhs[5][leg]] = uhs_H_a_3_z
-    total_uhs_x, total_uhs_y, total_uhs_z, total_uhs_x_2, total_uhs_y_2, total_uhs_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_uhs_x, R_a_uhs_y, R_a_uhs_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_uhs_x
-    R_t_y = f_p_y - total_uhs_y
-    R_t_z = f_p_z - total_uhs_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_uhs_x_2
-    R_a_y = mu_p_in_base_y - total_uhs_y_2
-    R_a_z = mu_p_in_base_z - total_uhs_z_2
+    R_a_x = R_a_uhs_x + mu_p_x
+    R_a_y = R_a_uhs_y + mu_p_y
+    R_a_z = R_a_uhs_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -3484,35 +3725,37 @@ def _run_inverse_kinematics(m, X):
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-q_1) displacement of joint 1
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_q_1 = atan2(inv_uhs_rho2_1*uhs_py_1*uhs_root_1, inv_uhs_rho2_1*uhs_px_1*uhs_root_1)
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
-        # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        # (uhs-q_1) displacement of joint 1
-        uhs_q_1 = atan2(inv_uhs_rho2_1*uhs_py_1*uhs_root_1, inv_uhs_rho2_1*uhs_px_1*uhs_root_1)
         # (uhs-q_2) displacement of joint 2
+        inv_uhs_rho2_2 = 1.0/uhs_rho2_2
         uhs_q_2 = (
-        atan2(-inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t, inv_uhs_rho2_2*uhs_root_1*uhs_root_2)
+        atan2(-inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z,
+            inv_uhs_rho2_2*uhs_root_1*uhs_root_2)
         )
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         ok = (
         ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t))
         )
+        # (uhs-q_1) displacement of joint 1
         out_q[_q_uhs[0][leg]] = uhs_q_1
+        # (uhs-q_2) displacement of joint 2
         out_q[_q_uhs[1][leg]] = uhs_q_2
-        out_q[_q_uhs[2][leg]] = -uhs_q_3
+        # (uhs-q_3) displacement of joint 3
+        out_q[_q_uhs[2][leg]] = -uhs_q_3_t
     return ok, (out_q,)
 
 
@@ -3582,18 +3825,18 @@ def _run_joint_rates(m, X, V):
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
         # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
         # (uhs-px_1) component along the reference direction
         uhs_px_1 = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
@@ -3606,68 +3849,72 @@ def _run_joint_rates(m, X, V):
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
+        uhs_c_3 = sin(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
-        uhs_v_1_t_2 = uhs_c_2*uhs_c_3_t*uhs_root_2
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
-        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_2 + uhs_s_3*uhs_v_1_t
+        uhs_s_3 = cos(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
-        uhs_S_dot_x = t_dot_x + omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
-        uhs_S_dot_y = t_dot_y + omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
-        uhs_S_dot_z = t_dot_z + omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
-        uhs_S_dot_r0_x = (
+        uhs_S_dot_x = t_dot_x + omega_y*uhs_q_z - omega_z*uhs_q_y
+        uhs_S_dot_y = t_dot_y + omega_z*uhs_q_x - omega_x*uhs_q_z
+        uhs_S_dot_z = t_dot_z + omega_x*uhs_q_y - omega_y*uhs_q_x
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_v_1_in_axes3_x = -uhs_c_2*uhs_root_2*uhs_s_3
+        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        # (uhs-qd_1) rate of joint 1
+        uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
         )
-        uhs_S_dot_r0_y = (
+        uhs_qd_1_t_2 = (
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_S_dot_r0_z = (
+        uhs_qd_1 = (uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)/uhs_v_1_in_axes2_z
+        # (uhs-qd_2) rate of joint 2
+        uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
-        # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
-        uhs_qd_1 = (uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)/uhs_v_1_r0_y
+        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
         uhs_qd_2 = (
-        (-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*(uhs_c_3_t*uhs_v_1_t -
-            uhs_s_3*uhs_v_1_t_2))/uhs_root_2
+        (uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*(uhs_c_3*uhs_v_1_in_axes3_x -
+            uhs_s_3*uhs_v_1_in_axes3_y))/uhs_root_2
         )
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
         ok = (
         ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
-            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size))
         )
+        # (uhs-qd_1) rate of joint 1
         out_qd[_qd_uhs[0][leg]] = uhs_qd_1
+        # (uhs-qd_2) rate of joint 2
         out_qd[_qd_uhs[1][leg]] = uhs_qd_2
+        # (uhs-qd_3) rate of joint 3
         out_qd[_qd_uhs[2][leg]] = uhs_qd_3
     return ok, (out_qd,)
 
@@ -3751,18 +3998,18 @@ def _run_joint_accelerations(m, X, V, A):
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
         # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
         # (uhs-px_1) component along the reference direction
         uhs_px_1 = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
@@ -3775,156 +4022,166 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
+        uhs_c_3 = sin(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_t = uhs_c_2*uhs_s_3
-        uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t
-        uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
-        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
-        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
-        uhs_w_1_t = uhs_s_2*uhs_s_3
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
-        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-w_1) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
-        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
-        axis_y_uhs_axes3_in_base_x = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*uhs_v_1_t
-        )
-        axis_y_uhs_axes3_in_base_y = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*uhs_v_1_t
-        )
-        axis_y_uhs_axes3_in_base_z = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*uhs_v_1_t
-        )
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3
-        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        uhs_s_3 = cos(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
-        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
-        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
-        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x
         uhs_S_dot_x = t_dot_x + uhs_S_dot_t
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
-        uhs_S_dot_r0_x = (
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
+        uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        # (uhs-qd_1) rate of joint 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
         )
-        uhs_S_dot_r0_y = (
+        uhs_qd_1_t_2 = (
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_S_dot_r0_z = (
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        # (uhs-qd_2) rate of joint 2
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
-        # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
-        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
         uhs_qd_2 = (
-        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
+        inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
         )
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_t = uhs_qd_1*uhs_s_2
-        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
+        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
-        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3
+        uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        # (uhs-W_2) centripetal tensor of link 2
+        uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
+        uhs_W_2_t = (
+        uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x +
+            uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y
+        )
         # (uhs-omega_3) angular velocity of link 3
-        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
-        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
-        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
-        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
-        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_x = uhs_omega_2_r1_y*uhs_qd_3 - uhs_zeta_2_t
-        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_omega_2_r1_x*uhs_qd_3
-        # (uhs-W_3) centripetal tensor of link 3
-        uhs_W_3_zz = uhs_omega_2_r1_x*uhs_omega_2_r1_x + uhs_omega_2_r1_y*uhs_omega_2_r1_y
-        # (uhs-bias) acceleration of the connection point at zero joint accelerations
-        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
-        uhs_bias_x = (
-        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
-            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_beta_3_y +
-            uhs_omega_2_r1_x*uhs_omega_3_z)
-        )
-        uhs_bias_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
-            uhs_x_3_x*(uhs_omega_2_r1_y*uhs_omega_3_z - uhs_beta_3_x) -
-            uhs_bias_t_2*uhs_omega_2_r1_x
-        )
-        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
+        uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3
         # (uhs-a_p) acceleration of the connection point without its centripetal part
-        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y
-        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z
-        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x
+        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y
+        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z
+        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x
         # (uhs-S_ddot) acceleration of the connection point
         uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
         uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
         uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3 - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y - uhs_omega_2_in_axes3_x*uhs_qd_3
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_in_axes3_x = (
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_beta_3_in_axes3_y +
+            uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z)
+        )
+        uhs_bias_in_axes3_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+            uhs_x_3_in_axes2_x*(uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        )
+        uhs_bias_in_axes3_z = -uhs_W_2_t*uhs_joint3_offset_x - uhs_W_2_t*uhs_x_3_in_axes2_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
-        uhs_rel_x = (
-        uhs_S_ddot_x*(axis_y_uhs_axes3_in_base_y*uhs_axis_z_z -
-            axis_y_uhs_axes3_in_base_z*uhs_axis_z_y) +
-            uhs_S_ddot_y*(axis_y_uhs_axes3_in_base_z*uhs_axis_z_x -
-            axis_y_uhs_axes3_in_base_x*uhs_axis_z_z) +
-            uhs_S_ddot_z*(axis_y_uhs_axes3_in_base_x*uhs_axis_z_y -
-            axis_y_uhs_axes3_in_base_y*uhs_axis_z_x) - uhs_bias_x
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
+        uhs_rel_t = uhs_s_2*uhs_s_3
+        uhs_rel_t_2 = uhs_c_1*uhs_c_3 - uhs_rel_t*uhs_s_1
+        uhs_rel_t_3 = uhs_c_1*uhs_rel_t + uhs_c_3*uhs_s_1
+        axis_y_uhs_axes3_x = (
+        uhs_base_frame_xx*uhs_rel_t_2 + uhs_base_frame_xy*uhs_rel_t_3 +
+            uhs_base_frame_xz*uhs_e_1_in_axes3_y
         )
-        uhs_rel_y = (
-        axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x + axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y +
-            axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z - uhs_bias_y
+        axis_y_uhs_axes3_y = (
+        uhs_base_frame_yx*uhs_rel_t_2 + uhs_base_frame_yy*uhs_rel_t_3 +
+            uhs_base_frame_yz*uhs_e_1_in_axes3_y
         )
-        uhs_rel_z = (
-        uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y + uhs_S_ddot_z*uhs_axis_z_z -
-            uhs_bias_z
+        axis_y_uhs_axes3_z = (
+        uhs_base_frame_zx*uhs_rel_t_2 + uhs_base_frame_zy*uhs_rel_t_3 +
+            uhs_base_frame_zz*uhs_e_1_in_axes3_y
+        )
+        uhs_rel_in_axes3_x = (
+        uhs_S_ddot_x*(axis_y_uhs_axes3_y*axis_z_uhs_axes3_z -
+            axis_y_uhs_axes3_z*axis_z_uhs_axes3_y) +
+            uhs_S_ddot_y*(axis_y_uhs_axes3_z*axis_z_uhs_axes3_x -
+            axis_y_uhs_axes3_x*axis_z_uhs_axes3_z) +
+            uhs_S_ddot_z*(axis_y_uhs_axes3_x*axis_z_uhs_axes3_y -
+            axis_y_uhs_axes3_y*axis_z_uhs_axes3_x) - uhs_bias_in_axes3_x
+        )
+        uhs_rel_in_axes3_y = (
+        axis_y_uhs_axes3_x*uhs_S_ddot_x + axis_y_uhs_axes3_y*uhs_S_ddot_y +
+            axis_y_uhs_axes3_z*uhs_S_ddot_z - uhs_bias_in_axes3_y
+        )
+        uhs_rel_in_axes3_z = (
+        axis_z_uhs_axes3_x*uhs_S_ddot_x + axis_z_uhs_axes3_y*uhs_S_ddot_y +
+            axis_z_uhs_axes3_z*uhs_S_ddot_z - uhs_bias_in_axes3_z
         )
         # (uhs-qdd_1) acceleration of joint 1
-        uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_z
-        uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3)
-        uhs_qdd_2 = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 - uhs_c_3_t*uhs_rel_x)
+        uhs_qdd_1 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y + uhs_rel_in_axes3_x*uhs_s_3)
         )
+        # (uhs-qdd_2) acceleration of joint 2
+        uhs_qdd_2_t = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y + uhs_rel_in_axes3_y*uhs_s_3 -
+            uhs_c_3*uhs_rel_in_axes3_x)
+        )
+        # (uhs-qdd_3) acceleration of joint 3
+        uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
         ok = (
         ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
-            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size))
         )
+        # (uhs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_uhs[0][leg]] = uhs_qdd_1
-        out_qdd[_qdd_uhs[1][leg]] = -uhs_qdd_2
+        # (uhs-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_uhs[1][leg]] = -uhs_qdd_2_t
+        # (uhs-qdd_3) acceleration of joint 3
         out_qdd[_qdd_uhs[2][leg]] = uhs_qdd_3
     return ok, (out_qdd,)
 
@@ -4002,30 +4259,32 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        inv_uhs_joint3_pitch, uhs_J_2_xy, uhs_J_2_xz, uhs_J_2_yz, uhs_J_3_xy, uhs_J_3_xz,
-            uhs_J_3_yz, uhs_Sigma_2_xx, uhs_Sigma_2_yy, uhs_Sigma_2_zz, uhs_Sigma_3_xx,
-            uhs_Sigma_3_yy, uhs_Sigma_3_zz, uhs_base_frame_xx, uhs_base_frame_xy,
-            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-            uhs_base_point_y, uhs_base_point_z, uhs_bias_t, uhs_branch_1, uhs_branch_2,
-            uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x,
-            uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_link3_mass,
+        inv_uhs_joint3_pitch, uhs_J_2_in_spec2_xy, uhs_J_2_in_spec2_xz, uhs_J_2_in_spec2_yz,
+            uhs_J_3_in_spec3_xy, uhs_J_3_in_spec3_xz, uhs_J_3_in_spec3_yz,
+            uhs_Sigma_2_in_axes2_xx, uhs_Sigma_2_in_axes2_yy, uhs_Sigma_2_in_axes2_zz,
+            uhs_Sigma_3_in_axes3_xx, uhs_Sigma_3_in_axes3_yy, uhs_Sigma_3_in_axes3_zz,
+            uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
+            uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
+            uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_bias_t,
+            uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
+            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
+            uhs_joint3_offset_x, uhs_link3_mass, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
             uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
         # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
         # (uhs-px_1) component along the reference direction
         uhs_px_1 = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
@@ -4038,293 +4297,315 @@ def _run_legs(m, X, V, A):
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
+        uhs_c_3 = sin(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_t = uhs_c_2*uhs_s_3
-        uhs_v_1_t_2 = uhs_root_2*uhs_v_1_t
-        uhs_v_1_t_3 = uhs_c_2*uhs_c_3_t*uhs_root_2
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_root_2 = 1.0/uhs_root_2
-        uhs_axis_z_x = inv_uhs_root_2*uhs_S_x
-        uhs_axis_z_y = inv_uhs_root_2*uhs_S_y
-        uhs_axis_z_z = inv_uhs_root_2*uhs_S_z
-        uhs_w_1_t = uhs_s_2*uhs_s_3
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
-        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-w_1) reciprocal vector 1
-        axis_y_uhs_axes3_r4_x = -uhs_c_1*uhs_c_3_t - uhs_s_1*uhs_w_1_t
-        axis_y_uhs_axes3_r4_y = uhs_c_3_t*uhs_s_1 - uhs_c_1*uhs_w_1_t
-        axis_y_uhs_axes3_in_base_x = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-            uhs_base_frame_xz*uhs_v_1_t
-        )
-        axis_y_uhs_axes3_in_base_y = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-            uhs_base_frame_yz*uhs_v_1_t
-        )
-        axis_y_uhs_axes3_in_base_z = (
-        axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-            uhs_base_frame_zz*uhs_v_1_t
-        )
-        axis_x_uhs_axes3_x = (
-        axis_y_uhs_axes3_in_base_y*uhs_axis_z_z - axis_y_uhs_axes3_in_base_z*uhs_axis_z_y
-        )
-        axis_x_uhs_axes3_y = (
-        axis_y_uhs_axes3_in_base_z*uhs_axis_z_x - axis_y_uhs_axes3_in_base_x*uhs_axis_z_z
-        )
-        axis_x_uhs_axes3_z = (
-        axis_y_uhs_axes3_in_base_x*uhs_axis_z_y - axis_y_uhs_axes3_in_base_y*uhs_axis_z_x
-        )
-        # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_r0_x = uhs_c_3_t*uhs_v_1_t_2 - uhs_s_3*uhs_v_1_t_3
-        uhs_v_1_r0_y = uhs_c_3_t*uhs_v_1_t_3 + uhs_s_3*uhs_v_1_t_2
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_v_1_r0_y = 1.0/uhs_v_1_r0_y
+        uhs_s_3 = cos(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
-        uhs_S_dot_t = omega_y*uhs_q_in_base_z - omega_z*uhs_q_in_base_y
-        uhs_S_dot_t_2 = omega_z*uhs_q_in_base_x - omega_x*uhs_q_in_base_z
-        uhs_S_dot_t_3 = omega_x*uhs_q_in_base_y - omega_y*uhs_q_in_base_x
+        uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
+        uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
+        uhs_S_dot_t_3 = omega_x*uhs_q_y - omega_y*uhs_q_x
         uhs_S_dot_x = t_dot_x + uhs_S_dot_t
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
-        uhs_S_dot_r0_x = (
+        # (uhs-v_1) velocity of the connection point per rate of joint 1
+        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3
+        uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
+        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
+        uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        # (uhs-w_3) reciprocal vector 3
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
+        axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
+        axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
+        uhs_w_3_x = axis_z_uhs_axes3_x*inv_uhs_joint3_pitch
+        uhs_w_3_y = axis_z_uhs_axes3_y*inv_uhs_joint3_pitch
+        uhs_w_3_z = axis_z_uhs_axes3_z*inv_uhs_joint3_pitch
+        # (uhs-qd_1) rate of joint 1
+        inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
+        uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
             uhs_S_dot_z*uhs_base_frame_zx
         )
-        uhs_S_dot_r0_y = (
+        uhs_qd_1_t_2 = (
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_S_dot_r0_z = (
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        # (uhs-qd_2) rate of joint 2
+        uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_S_dot_r1_y = -uhs_S_dot_r0_x*uhs_s_1 - uhs_S_dot_r0_y*uhs_c_1
-        # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_S_dot_r0_z*uhs_s_2 - uhs_S_dot_r1_y*uhs_c_2)
-        uhs_qd_1 = inv_uhs_v_1_r0_y*(uhs_S_dot_r0_y*uhs_s_1 - uhs_S_dot_r0_x*uhs_c_1)
+        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
         uhs_qd_2 = (
-        inv_uhs_root_2*(-uhs_S_dot_r0_z*uhs_c_2 - uhs_S_dot_r1_y*uhs_s_2 - uhs_qd_1*uhs_v_1_r0_x)
+        inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
         )
+        # (uhs-qd_3) rate of joint 3
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_t = uhs_qd_1*uhs_s_2
-        uhs_omega_1_t_2 = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
+        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_r1_x = uhs_qd_2*uhs_s_3 - uhs_c_3_t*uhs_omega_1_t_2
-        uhs_omega_2_r1_y = uhs_c_3_t*uhs_qd_2 + uhs_omega_1_t_2*uhs_s_3
-        # (uhs-omega_3) angular velocity of link 3
-        uhs_omega_3_z = uhs_omega_1_t + uhs_qd_3
-        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        uhs_zeta_3_x = uhs_omega_2_r1_y*uhs_qd_3
-        uhs_zeta_3_y = uhs_omega_2_r1_x*uhs_qd_3
-        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_x = uhs_omega_1_t_2*uhs_qd_2
-        uhs_zeta_2_y = uhs_omega_1_t*uhs_qd_2
-        uhs_zeta_2_t = uhs_c_3_t*uhs_zeta_2_y
-        uhs_zeta_2_t_2 = uhs_s_3*uhs_zeta_2_y
-        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_x = uhs_zeta_3_x - uhs_zeta_2_t
-        uhs_beta_3_y = uhs_zeta_2_t_2 - uhs_zeta_3_y
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3
+        uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
-        uhs_W_2_t = uhs_omega_1_t*uhs_omega_1_t
-        uhs_W_2_t_2 = uhs_omega_1_t_2*uhs_omega_1_t_2
-        uhs_W_2_t_3 = uhs_qd_2*uhs_qd_2
-        uhs_W_2_xy = uhs_omega_1_t*uhs_omega_1_t_2
+        uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
+        uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
+        uhs_W_2_in_axes2_xy = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_y
+        uhs_W_2_t = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_x
+        uhs_W_2_t_2 = uhs_omega_2_in_axes3_y*uhs_omega_2_in_axes3_y
+        uhs_W_2_in_axes3_xy = uhs_omega_2_in_axes3_x*uhs_omega_2_in_axes3_y
+        uhs_W_2_t_3 = uhs_W_2_t + uhs_W_2_t_2
+        # (uhs-omega_3) angular velocity of link 3
+        uhs_omega_3_in_axes3_z = uhs_omega_1_in_axes2_x + uhs_qd_3
         # (uhs-W_3) centripetal tensor of link 3
-        uhs_W_3_t = uhs_omega_2_r1_x*uhs_omega_2_r1_x
-        uhs_W_3_t_2 = uhs_omega_2_r1_y*uhs_omega_2_r1_y
-        uhs_W_3_t_3 = uhs_omega_3_z*uhs_omega_3_z
-        uhs_W_3_xy = uhs_omega_2_r1_x*uhs_omega_2_r1_y
-        uhs_W_3_xz = uhs_omega_2_r1_x*uhs_omega_3_z
-        uhs_W_3_yz = uhs_omega_2_r1_y*uhs_omega_3_z
-        uhs_W_3_zz = uhs_W_3_t + uhs_W_3_t_2
-        # (uhs-bias) acceleration of the connection point at zero joint accelerations
-        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
-        uhs_bias_x = (
-        uhs_bias_t_2*uhs_omega_2_r1_y + uhs_joint3_offset_x*(uhs_zeta_2_t_2 +
-            uhs_omega_1_t*uhs_omega_2_r1_x) + uhs_x_3_x*(uhs_W_3_xz + uhs_beta_3_y)
-        )
-        uhs_bias_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_t*uhs_omega_2_r1_y) +
-            uhs_x_3_x*(uhs_W_3_yz - uhs_beta_3_x) - uhs_bias_t_2*uhs_omega_2_r1_x
-        )
-        uhs_bias_z = -uhs_W_3_zz*uhs_joint3_offset_x - uhs_W_3_zz*uhs_x_3_x
-        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        uhs_g_r1_x = uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x
-        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
-        uhs_g_r3_x = uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y
-        uhs_g_r3_y = -uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2
-        # (uhs-w_3) reciprocal vector 3
-        uhs_w_3_t = inv_uhs_joint3_pitch*uhs_axis_z_x
-        uhs_w_3_t_2 = inv_uhs_joint3_pitch*uhs_axis_z_y
-        uhs_w_3_t_3 = inv_uhs_joint3_pitch*uhs_axis_z_z
+        uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
+        uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
         # (uhs-a_p) acceleration of the connection point without its centripetal part
-        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_in_base_z - alpha_z*uhs_q_in_base_y
-        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_in_base_x - alpha_x*uhs_q_in_base_z
-        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_in_base_y - alpha_y*uhs_q_in_base_x
+        uhs_a_p_x = t_ddot_x + alpha_y*uhs_q_z - alpha_z*uhs_q_y
+        uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z
+        uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x
         # (uhs-S_ddot) acceleration of the connection point
+        uhs_S_ddot_t = uhs_s_2*uhs_s_3
+        uhs_S_ddot_t_2 = uhs_c_1*uhs_c_3 - uhs_S_ddot_t*uhs_s_1
+        uhs_S_ddot_t_3 = uhs_S_ddot_t*uhs_c_1 + uhs_c_3*uhs_s_1
+        axis_y_uhs_axes3_x = (
+        uhs_S_ddot_t_2*uhs_base_frame_xx + uhs_S_ddot_t_3*uhs_base_frame_xy +
+            uhs_base_frame_xz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_y = (
+        uhs_S_ddot_t_2*uhs_base_frame_yx + uhs_S_ddot_t_3*uhs_base_frame_yy +
+            uhs_base_frame_yz*uhs_e_1_in_axes3_y
+        )
+        axis_y_uhs_axes3_z = (
+        uhs_S_ddot_t_2*uhs_base_frame_zx + uhs_S_ddot_t_3*uhs_base_frame_zy +
+            uhs_base_frame_zz*uhs_e_1_in_axes3_y
+        )
+        axis_x_uhs_axes3_x = (
+        axis_y_uhs_axes3_y*axis_z_uhs_axes3_z - axis_y_uhs_axes3_z*axis_z_uhs_axes3_y
+        )
+        axis_x_uhs_axes3_y = (
+        axis_y_uhs_axes3_z*axis_z_uhs_axes3_x - axis_y_uhs_axes3_x*axis_z_uhs_axes3_z
+        )
+        axis_x_uhs_axes3_z = (
+        axis_y_uhs_axes3_x*axis_z_uhs_axes3_y - axis_y_uhs_axes3_y*axis_z_uhs_axes3_x
+        )
         uhs_S_ddot_x = uhs_a_p_x + omega_y*uhs_S_dot_t_3 - omega_z*uhs_S_dot_t_2
         uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
         uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
-        uhs_S_ddot_tip_x = (
+        uhs_S_ddot_in_axes3_x = (
         axis_x_uhs_axes3_x*uhs_S_ddot_x + axis_x_uhs_axes3_y*uhs_S_ddot_y +
             axis_x_uhs_axes3_z*uhs_S_ddot_z
         )
-        uhs_S_ddot_tip_y = (
-        axis_y_uhs_axes3_in_base_x*uhs_S_ddot_x + axis_y_uhs_axes3_in_base_y*uhs_S_ddot_y +
-            axis_y_uhs_axes3_in_base_z*uhs_S_ddot_z
+        uhs_S_ddot_in_axes3_y = (
+        axis_y_uhs_axes3_x*uhs_S_ddot_x + axis_y_uhs_axes3_y*uhs_S_ddot_y +
+            axis_y_uhs_axes3_z*uhs_S_ddot_z
         )
-        uhs_S_ddot_tip_z = (
-        uhs_S_ddot_x*uhs_axis_z_x + uhs_S_ddot_y*uhs_axis_z_y + uhs_S_ddot_z*uhs_axis_z_z
+        uhs_S_ddot_in_axes3_z = (
+        axis_z_uhs_axes3_x*uhs_S_ddot_x + axis_z_uhs_axes3_y*uhs_S_ddot_y +
+            axis_z_uhs_axes3_z*uhs_S_ddot_z
         )
+        # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3
+        # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
+        uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
+        # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
+        # (uhs-bias) acceleration of the connection point at zero joint accelerations
+        uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
+        uhs_bias_in_axes3_x = (
+        uhs_bias_t_2*uhs_omega_2_in_axes3_y + uhs_joint3_offset_x*(uhs_zeta_2_in_axes3_y +
+            uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_x) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
+        )
+        uhs_bias_in_axes3_y = (
+        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
+            uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        )
+        uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
-        uhs_rel_x = uhs_S_ddot_tip_x - uhs_bias_x
-        uhs_rel_y = uhs_S_ddot_tip_y - uhs_bias_y
-        uhs_rel_z = uhs_S_ddot_tip_z - uhs_bias_z
+        uhs_rel_in_axes3_x = uhs_S_ddot_in_axes3_x - uhs_bias_in_axes3_x
+        uhs_rel_in_axes3_y = uhs_S_ddot_in_axes3_y - uhs_bias_in_axes3_y
+        uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
-        uhs_qdd_1 = inv_uhs_v_1_r0_y*(uhs_c_3_t*uhs_rel_y + uhs_rel_x*uhs_s_3)
-        uhs_qdd_2 = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_r0_x + uhs_rel_y*uhs_s_3 - uhs_c_3_t*uhs_rel_x)
+        uhs_qdd_1 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y + uhs_rel_in_axes3_x*uhs_s_3)
         )
-        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
-        uhs_acc_3_x = (
-        uhs_S_ddot_tip_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
-            axis_x_uhs_axes3_z*gravity_z
-        )
-        uhs_acc_3_y = (
-        uhs_S_ddot_tip_y - axis_y_uhs_axes3_in_base_x*gravity_x -
-            axis_y_uhs_axes3_in_base_y*gravity_y - axis_y_uhs_axes3_in_base_z*gravity_z
-        )
-        uhs_acc_3_z = (
-        uhs_S_ddot_tip_z - gravity_x*uhs_axis_z_x - gravity_y*uhs_axis_z_y -
-            gravity_z*uhs_axis_z_z
+        # (uhs-qdd_2) acceleration of joint 2
+        uhs_qdd_2_t = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y + uhs_rel_in_axes3_y*uhs_s_3 -
+            uhs_c_3*uhs_rel_in_axes3_x)
         )
         # (uhs-alpha_1) angular acceleration of link 1
-        uhs_alpha_1_t = uhs_qdd_1*uhs_s_2
-        uhs_alpha_1_t_2 = uhs_c_2*uhs_qdd_1
+        uhs_alpha_1_in_axes2_x = uhs_qdd_1*uhs_s_2
+        uhs_alpha_1_in_axes2_y = uhs_c_2*uhs_qdd_1
         # (uhs-alpha_2) angular acceleration of link 2
-        uhs_alpha_2_x = uhs_alpha_1_t - uhs_zeta_2_x
-        uhs_alpha_2_y = -uhs_alpha_1_t_2 - uhs_zeta_2_y
-        # (uhs-alpha_3) angular acceleration of link 3
-        uhs_alpha_3_x = uhs_zeta_3_x + uhs_alpha_2_y*uhs_c_3_t - uhs_qdd_2*uhs_s_3
-        uhs_alpha_3_y = -uhs_zeta_3_y - uhs_alpha_2_y*uhs_s_3 - uhs_c_3_t*uhs_qdd_2
-        uhs_alpha_3_z = uhs_alpha_2_x + inv_uhs_joint3_pitch*uhs_rel_z
-        # (uhs-B_3) acceleration tensor of link 3
-        uhs_B_3_xy = uhs_W_3_xy - uhs_alpha_3_z
-        uhs_B_3_xz = uhs_W_3_xz + uhs_alpha_3_y
-        uhs_B_3_yx = uhs_W_3_xy + uhs_alpha_3_z
-        uhs_B_3_yz = uhs_W_3_yz - uhs_alpha_3_x
-        uhs_B_3_zx = uhs_W_3_xz - uhs_alpha_3_y
-        uhs_B_3_zy = uhs_W_3_yz + uhs_alpha_3_x
-        # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        uhs_mu_3_x = (
-        uhs_B_3_yx*uhs_J_3_xy + uhs_B_3_zy*uhs_Sigma_3_yy + uhs_J_3_xz*(uhs_W_3_t_2 - uhs_W_3_t_3)
-            + uhs_acc_3_z*uhs_h_3_z - uhs_B_3_yz*uhs_Sigma_3_zz - uhs_B_3_zx*uhs_J_3_yz -
-            uhs_acc_3_y*uhs_h_3_x
-        )
-        uhs_mu_3_y = (
-        uhs_B_3_xz*uhs_Sigma_3_zz + uhs_B_3_zy*uhs_J_3_yz + uhs_acc_3_x*uhs_h_3_x -
-            uhs_B_3_xy*uhs_J_3_xz - uhs_B_3_zx*uhs_Sigma_3_xx - uhs_J_3_xy*(uhs_W_3_t -
-            uhs_W_3_t_3) - uhs_acc_3_z*uhs_h_3_y
-        )
-        uhs_mu_3_z = (
-        uhs_B_3_xz*uhs_J_3_xz + uhs_B_3_yx*uhs_Sigma_3_xx + uhs_J_3_yz*(uhs_W_3_t - uhs_W_3_t_2) +
-            uhs_acc_3_y*uhs_h_3_y - uhs_B_3_xy*uhs_Sigma_3_yy - uhs_B_3_yz*uhs_J_3_xy -
-            uhs_acc_3_x*uhs_h_3_z
-        )
+        uhs_alpha_2_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_in_axes2_x
+        uhs_alpha_2_in_axes2_y = uhs_alpha_1_in_axes2_y - uhs_W_2_in_axes2_xz
         # (uhs-B_2) acceleration tensor of link 2
-        uhs_B_2_xy = uhs_qdd_2 - uhs_W_2_xy
-        uhs_B_2_yx = -uhs_W_2_xy - uhs_qdd_2
-        uhs_B_2_zx = uhs_zeta_2_y - uhs_alpha_2_y
-        uhs_B_2_zy = uhs_alpha_2_x - uhs_zeta_2_x
+        uhs_B_2_in_axes2_xy = uhs_W_2_in_axes2_xy + uhs_qdd_2_t
+        uhs_B_2_in_axes2_yx = uhs_W_2_in_axes2_xy - uhs_qdd_2_t
+        uhs_B_2_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_in_axes2_y
+        uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x
+        # (uhs-alpha_3) angular acceleration of link 3
+        uhs_alpha_3_in_axes3_x = (
+        uhs_zeta_3_in_axes3_x + uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2_t*uhs_s_3
+        )
+        uhs_alpha_3_in_axes3_y = (
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_s_3 - uhs_c_3*uhs_qdd_2_t
+        )
+        uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
+        # (uhs-B_3) acceleration tensor of link 3
+        uhs_B_3_in_axes3_xy = uhs_W_2_in_axes3_xy - uhs_alpha_3_in_axes3_z
+        uhs_B_3_in_axes3_xz = uhs_W_3_in_axes3_xz + uhs_alpha_3_in_axes3_y
+        uhs_B_3_in_axes3_yx = uhs_W_2_in_axes3_xy + uhs_alpha_3_in_axes3_z
+        uhs_B_3_in_axes3_yz = uhs_W_3_in_axes3_yz - uhs_alpha_3_in_axes3_x
+        uhs_B_3_in_axes3_zx = uhs_W_3_in_axes3_xz - uhs_alpha_3_in_axes3_y
+        uhs_B_3_in_axes3_zy = uhs_W_3_in_axes3_yz + uhs_alpha_3_in_axes3_x
+        # (uhs-acc_3) acceleration of the reference point of link 3, less gravity
+        uhs_acc_3_in_axes3_x = (
+        uhs_S_ddot_in_axes3_x - axis_x_uhs_axes3_x*gravity_x - axis_x_uhs_axes3_y*gravity_y -
+            axis_x_uhs_axes3_z*gravity_z
+        )
+        uhs_acc_3_in_axes3_y = (
+        uhs_S_ddot_in_axes3_y - axis_y_uhs_axes3_x*gravity_x - axis_y_uhs_axes3_y*gravity_y -
+            axis_y_uhs_axes3_z*gravity_z
+        )
+        uhs_acc_3_in_axes3_z = (
+        uhs_S_ddot_in_axes3_z - axis_z_uhs_axes3_x*gravity_x - axis_z_uhs_axes3_y*gravity_y -
+            axis_z_uhs_axes3_z*gravity_z
+        )
+        # (uhs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        uhs_mu_3_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
+        uhs_mu_3_in_axes3_x = (
+        uhs_B_3_in_axes3_yx*uhs_J_3_in_spec3_xy + uhs_B_3_in_axes3_zy*uhs_Sigma_3_in_axes3_yy +
+            uhs_J_3_in_spec3_xz*(uhs_W_2_t_2 - uhs_mu_3_t) +
+            uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_yz*uhs_Sigma_3_in_axes3_zz
+            - uhs_B_3_in_axes3_zx*uhs_J_3_in_spec3_yz - uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_x
+        )
+        uhs_mu_3_in_axes3_y = (
+        uhs_B_3_in_axes3_xz*uhs_Sigma_3_in_axes3_zz + uhs_B_3_in_axes3_zy*uhs_J_3_in_spec3_yz +
+            uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_x - uhs_B_3_in_axes3_xy*uhs_J_3_in_spec3_xz -
+            uhs_B_3_in_axes3_zx*uhs_Sigma_3_in_axes3_xx - uhs_J_3_in_spec3_xy*(uhs_W_2_t -
+            uhs_mu_3_t) - uhs_acc_3_in_axes3_z*uhs_h_3_in_spec3_y
+        )
+        uhs_mu_3_in_axes3_z = (
+        uhs_B_3_in_axes3_xz*uhs_J_3_in_spec3_xz + uhs_B_3_in_axes3_yx*uhs_Sigma_3_in_axes3_xx +
+            uhs_J_3_in_spec3_yz*(uhs_W_2_t - uhs_W_2_t_2) +
+            uhs_acc_3_in_axes3_y*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_xy*uhs_Sigma_3_in_axes3_yy
+            - uhs_B_3_in_axes3_yz*uhs_J_3_in_spec3_xy - uhs_acc_3_in_axes3_x*uhs_h_3_in_spec3_z
+        )
         # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        uhs_mu_2_x = (
-        uhs_B_2_yx*uhs_J_2_xy + uhs_B_2_zx*uhs_J_2_xz + uhs_B_2_zy*uhs_Sigma_2_yy +
-            uhs_Sigma_2_zz*uhs_alpha_1_t + uhs_g_r1_x*uhs_h_2_z + uhs_g_r3_y*uhs_h_2_y -
-            uhs_J_2_yz*(uhs_W_2_t_2 - uhs_W_2_t_3)
+        uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
+        uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
+        uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_mu_2_t_3*uhs_s_2
+        uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_t_7*uhs_s_2
+        uhs_mu_2_in_axes2_x = (
+        uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz +
+            uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
+            uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_x + uhs_g_in_axes2_y*uhs_h_2_in_spec2_y +
+            uhs_g_in_axes2_z*uhs_h_2_in_spec2_z - uhs_J_2_in_spec2_yz*(uhs_mu_2_t_5 -
+            uhs_mu_2_t_6)
         )
-        uhs_mu_2_y = (
-        uhs_B_2_xy*uhs_J_2_yz + uhs_g_r1_x*uhs_h_2_x - uhs_B_2_zx*uhs_Sigma_2_xx -
-            uhs_B_2_zy*uhs_J_2_xz - uhs_J_2_xy*(uhs_W_2_t - uhs_W_2_t_3) -
-            uhs_Sigma_2_zz*uhs_alpha_1_t_2 - uhs_g_r3_x*uhs_h_2_y
+        uhs_mu_2_in_axes2_y = (
+        uhs_B_2_in_axes2_xy*uhs_J_2_in_spec2_yz + uhs_Sigma_2_in_axes2_zz*uhs_alpha_1_in_axes2_y +
+            uhs_g_in_axes2_z*uhs_h_2_in_spec2_x - uhs_B_2_in_axes2_zx*uhs_Sigma_2_in_axes2_xx -
+            uhs_B_2_in_axes2_zy*uhs_J_2_in_spec2_xz - uhs_J_2_in_spec2_xy*(uhs_mu_2_t_4 -
+            uhs_mu_2_t_6) - uhs_g_in_axes2_x*uhs_h_2_in_spec2_y
         )
-        uhs_mu_2_z = (
-        uhs_B_2_yx*uhs_Sigma_2_xx + uhs_J_2_xy*uhs_alpha_1_t + uhs_J_2_yz*uhs_alpha_1_t_2 -
-            uhs_B_2_xy*uhs_Sigma_2_yy - uhs_J_2_xz*(uhs_W_2_t - uhs_W_2_t_2) -
-            uhs_g_r3_x*uhs_h_2_z - uhs_g_r3_y*uhs_h_2_x
+        uhs_mu_2_in_axes2_z = (
+        uhs_B_2_in_axes2_yx*uhs_Sigma_2_in_axes2_xx + uhs_J_2_in_spec2_xy*uhs_alpha_1_in_axes2_x -
+            uhs_B_2_in_axes2_xy*uhs_Sigma_2_in_axes2_yy - uhs_J_2_in_spec2_xz*(uhs_mu_2_t_4 -
+            uhs_mu_2_t_5) - uhs_J_2_in_spec2_yz*uhs_alpha_1_in_axes2_y -
+            uhs_g_in_axes2_x*uhs_h_2_in_spec2_z - uhs_g_in_axes2_y*uhs_h_2_in_spec2_x
         )
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        uhs_N_2_x = uhs_mu_2_x + uhs_mu_3_z
-        uhs_N_2_y = uhs_mu_2_y + uhs_c_3_t*uhs_mu_3_x - uhs_mu_3_y*uhs_s_3
-        uhs_N_2_z = uhs_mu_2_z + uhs_c_3_t*uhs_mu_3_y + uhs_mu_3_x*uhs_s_3
-        # (uhs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        uhs_G_t = inv_uhs_root_2*uhs_N_2_z
-        uhs_G_t_2 = (
-        inv_uhs_v_1_r0_y*(uhs_G_t*uhs_v_1_r0_x + uhs_N_2_y*uhs_c_2 - uhs_N_2_x*uhs_s_2)
+        uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z
+        uhs_N_2_in_axes2_y = (
+        uhs_mu_2_in_axes2_y + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
+        )
+        uhs_N_2_in_axes2_z = (
+        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_y + uhs_mu_3_in_axes3_x*uhs_s_3
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
-        uhs_c_x = (
-        uhs_G_t_2*uhs_s_3 + uhs_h_3_y*(uhs_W_3_t_2 + uhs_W_3_t_3) - uhs_B_3_xy*uhs_h_3_z -
-            uhs_B_3_xz*uhs_h_3_x - uhs_G_t*uhs_c_3_t
+        uhs_c_t = inv_uhs_root_2*uhs_N_2_in_axes2_z
+        uhs_c_t_2 = (
+        inv_uhs_v_1_in_axes2_z*(uhs_c_t*uhs_v_1_in_axes2_y - uhs_N_2_in_axes2_x*uhs_s_2 -
+            uhs_N_2_in_axes2_y*uhs_c_2)
         )
-        uhs_c_y = (
-        uhs_G_t*uhs_s_3 + uhs_G_t_2*uhs_c_3_t + uhs_h_3_z*(uhs_W_3_t + uhs_W_3_t_3) -
-            uhs_B_3_yx*uhs_h_3_y - uhs_B_3_yz*uhs_h_3_x
+        uhs_c_in_axes3_x = (
+        uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t) -
+            uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x -
+            uhs_c_3*uhs_c_t
         )
-        uhs_c_z = (
-        uhs_W_3_zz*uhs_h_3_x - inv_uhs_joint3_pitch*uhs_mu_3_z - uhs_B_3_zx*uhs_h_3_y -
-            uhs_B_3_zy*uhs_h_3_z
+        uhs_c_in_axes3_y = (
+        uhs_c_3*uhs_c_t_2 + uhs_c_t*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) -
+            uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
+        )
+        uhs_c_in_axes3_z = (
+        uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_in_axes3_z -
+            uhs_B_3_in_axes3_zx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_zy*uhs_h_3_in_spec3_z
         )
         # (uhs-c_true) leg force on the platform without actuation, the last link's mass included
-        uhs_c_true_x = uhs_c_x - uhs_acc_3_x*uhs_link3_mass
-        uhs_c_true_y = uhs_c_y - uhs_acc_3_y*uhs_link3_mass
-        uhs_c_true_z = uhs_c_z - uhs_acc_3_z*uhs_link3_mass
-        uhs_c_true_in_base_x = (
-        axis_x_uhs_axes3_x*uhs_c_true_x + axis_y_uhs_axes3_in_base_x*uhs_c_true_y +
-            uhs_axis_z_x*uhs_c_true_z
+        uhs_c_true_in_axes3_x = uhs_c_in_axes3_x - uhs_acc_3_in_axes3_x*uhs_link3_mass
+        uhs_c_true_in_axes3_y = uhs_c_in_axes3_y - uhs_acc_3_in_axes3_y*uhs_link3_mass
+        uhs_c_true_in_axes3_z = uhs_c_in_axes3_z - uhs_acc_3_in_axes3_z*uhs_link3_mass
+        uhs_c_true_x = (
+        axis_x_uhs_axes3_x*uhs_c_true_in_axes3_x + axis_y_uhs_axes3_x*uhs_c_true_in_axes3_y +
+            axis_z_uhs_axes3_x*uhs_c_true_in_axes3_z
         )
-        uhs_c_true_in_base_y = (
-        axis_x_uhs_axes3_y*uhs_c_true_x + axis_y_uhs_axes3_in_base_y*uhs_c_true_y +
-            uhs_axis_z_y*uhs_c_true_z
+        uhs_c_true_y = (
+        axis_x_uhs_axes3_y*uhs_c_true_in_axes3_x + axis_y_uhs_axes3_y*uhs_c_true_in_axes3_y +
+            axis_z_uhs_axes3_y*uhs_c_true_in_axes3_z
         )
-        uhs_c_true_in_base_z = (
-        axis_x_uhs_axes3_z*uhs_c_true_x + axis_y_uhs_axes3_in_base_z*uhs_c_true_y +
-            uhs_axis_z_z*uhs_c_true_z
+        uhs_c_true_z = (
+        axis_x_uhs_axes3_z*uhs_c_true_in_axes3_x + axis_y_uhs_axes3_z*uhs_c_true_in_axes3_y +
+            axis_z_uhs_axes3_z*uhs_c_true_in_axes3_z
         )
         ok = (
         ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
-            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size))
         )
-        out_leg_force[_leg_force_uhs[0][leg]] = uhs_c_true_in_base_x
-        out_leg_force[_leg_force_uhs[1][leg]] = uhs_c_true_in_base_y
-        out_leg_force[_leg_force_uhs[2][leg]] = uhs_c_true_in_base_z
-        out_drive[_drive_uhs[0][leg]] = uhs_w_3_t
-        out_drive[_drive_uhs[1][leg]] = uhs_w_3_t_2
-        out_drive[_drive_uhs[2][leg]] = uhs_w_3_t_3
+        # (uhs-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_uhs[0][leg]] = uhs_c_true_x
+        out_leg_force[_leg_force_uhs[1][leg]] = uhs_c_true_y
+        out_leg_force[_leg_force_uhs[2][leg]] = uhs_c_true_z
+        # (uhs-w_3) reciprocal vector 3
+        out_drive[_drive_uhs[0][leg]] = uhs_w_3_x
+        out_drive[_drive_uhs[1][leg]] = uhs_w_3_y
+        out_drive[_drive_uhs[2][leg]] = uhs_w_3_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4334,7 +4615,10 @@ def _run_potential(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4374,21 +4658,23 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_uhs_joint3_pitch, uhs_b_r0_x, uhs_b_r0_y, uhs_b_r0_z, uhs_base_frame_xx,
-            uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-            uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1, uhs_branch_2,
-            uhs_g_r0_x, uhs_g_r0_y, uhs_g_r0_z, uhs_h_2_x, uhs_h_2_y, uhs_h_2_z, uhs_h_3_x,
-            uhs_h_3_y, uhs_h_3_z, uhs_joint3_offset_x, uhs_link2_mass,
+        inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
+            uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx,
+            uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y,
+            uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_h_2_in_spec2_x, uhs_h_2_in_spec2_y,
+            uhs_h_2_in_spec2_z, uhs_h_3_in_spec3_x, uhs_h_3_in_spec3_y, uhs_h_3_in_spec3_z,
+            uhs_joint3_offset_x, uhs_link2_mass, uhs_mu_2_t, uhs_mu_2_t_2, uhs_mu_2_t_3,
             uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
-            uhs_platform_point_z, uhs_size_t,
+            uhs_platform_point_z, uhs_potential_t, uhs_potential_t_2, uhs_potential_t_3,
+            uhs_size_t,
         ) = k
         # (uhs-S) from the base point to the connection point
         uhs_S_x = (
@@ -4415,54 +4701,56 @@ def _run_potential(m, X):
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
+        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
+        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
+        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
+        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_t
+        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
+        uhs_c_3 = sin(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = inv_uhs_rho2_1*uhs_py_1*uhs_root_1
-        # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        uhs_g_r1_y = -uhs_c_1*uhs_g_r0_y - uhs_g_r0_x*uhs_s_1
+        uhs_s_3 = cos(uhs_q_3_t)
         # (potential) potential energy
-        uhs_b_r1_y = -uhs_b_r0_x*uhs_s_1 - uhs_b_r0_y*uhs_c_1
-        uhs_potential_t = (
-        (uhs_g_r0_y*uhs_s_1 - uhs_c_1*uhs_g_r0_x)*(uhs_h_2_y + uhs_c_3_t*uhs_h_3_z +
-            uhs_h_3_y*uhs_s_3 + uhs_link2_mass*(uhs_b_r0_y*uhs_s_1 - uhs_b_r0_x*uhs_c_1)) +
-            (-uhs_c_2*uhs_g_r0_z - uhs_g_r1_y*uhs_s_2)*(uhs_c_3_t*uhs_h_3_y +
-            uhs_link2_mass*(-uhs_b_r0_z*uhs_c_2 - uhs_b_r1_y*uhs_s_2) - uhs_h_2_z -
-            uhs_h_3_z*uhs_s_3) + (uhs_g_r0_z*uhs_s_2 - uhs_c_2*uhs_g_r1_y)*(uhs_h_2_x + uhs_h_3_x
-            + uhs_link2_mass*(uhs_b_r0_z*uhs_s_2 - uhs_b_r1_y*uhs_c_2))
+        uhs_potential_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_potential_t_5 = uhs_c_1*uhs_potential_t_2 - uhs_potential_t*uhs_s_1
+        uhs_potential_t_6 = (
+        (uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1)*(uhs_h_2_in_spec2_y +
+            uhs_c_3*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_s_3 +
+            uhs_link2_mass*(uhs_c_1*uhs_potential_t + uhs_potential_t_2*uhs_s_1)) +
+            (uhs_c_2*uhs_mu_2_t_3 - uhs_potential_t_4*uhs_s_2)*(uhs_c_3*uhs_h_3_in_spec3_y +
+            uhs_link2_mass*(uhs_c_2*uhs_potential_t_3 - uhs_potential_t_5*uhs_s_2) -
+            uhs_h_2_in_spec2_z - uhs_h_3_in_spec3_z*uhs_s_3) + (uhs_c_2*uhs_potential_t_4 +
+            uhs_mu_2_t_3*uhs_s_2)*(uhs_h_2_in_spec2_x + uhs_h_3_in_spec3_x +
+            uhs_link2_mass*(uhs_c_2*uhs_potential_t_5 + uhs_potential_t_3*uhs_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t))
         )
         sums = m.added(sums, leg, (
-        uhs_potential_t,
+        uhs_potential_t_6,
         ))
-    total_uhs, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_uhs
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4474,7 +4762,7 @@ def _run_condition(m, X):
     cos = m.cos
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4517,30 +4805,31 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_uhs_joint3_pitch, inv_uhs_size, inv_uhs_size_t_3, uhs_base_frame_xx,
-            uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
-            uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
-            uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_branch_1, uhs_branch_2,
-            uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
-            uhs_platform_point_y, uhs_platform_point_z, uhs_size, uhs_size_t,
+        inv_uhs_joint3_pitch, inv_uhs_size, inv_uhs_size_t, uhs_base_frame_xx, uhs_base_frame_xy,
+            uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+            uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+            uhs_base_point_y, uhs_base_point_z, uhs_branch_1, uhs_branch_2, uhs_joint3_offset_x,
+            uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+            uhs_platform_point_z, uhs_size, uhs_size_t,
         ) = k
         # (uhs-S) from the base point to the connection point
-        uhs_q_in_base_x = (
+        uhs_q_x = (
         R_xx*uhs_platform_point_x + R_xy*uhs_platform_point_y + R_xz*uhs_platform_point_z
         )
-        uhs_q_in_base_y = (
+        uhs_q_y = (
         R_yx*uhs_platform_point_x + R_yy*uhs_platform_point_y + R_yz*uhs_platform_point_z
         )
-        uhs_q_in_base_z = (
+        uhs_q_z = (
         R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z
         )
-        uhs_S_x = t_x + uhs_q_in_base_x - uhs_base_point_x
-        uhs_S_y = t_y + uhs_q_in_base_y - uhs_base_point_y
-        uhs_S_z = t_z + uhs_q_in_base_z - uhs_base_point_z
+        uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
+        uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
+        uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
         # (uhs-px_1) component along the reference direction
         uhs_px_1 = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
@@ -4552,72 +4841,74 @@ def _run_condition(m, X):
         # (uhs-rho2_1) squared amplitude
         uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
         # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_t = (
+        uhs_xi_1_in_axes1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_t*uhs_xi_1_t
+        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
-        # (uhs-x_3) from the origin of joint 3 to the connection point
-        uhs_x_3_x = uhs_root_2 - uhs_joint3_offset_x
-        # (uhs-q_3) displacement of joint 3
-        uhs_q_3 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_x)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        uhs_c_2 = uhs_branch_1*sqrt(uhs_rho2_1)*uhs_root_2/uhs_rho2_2
+        uhs_c_2 = -uhs_branch_1*sqrt(uhs_rho2_1)*uhs_root_2/uhs_rho2_2
+        # (uhs-x_3) from the origin of joint 3 to the connection point
+        uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
+        # (uhs-q_3) displacement of joint 3
+        uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3_t = sin(uhs_q_3)
+        uhs_c_3 = sin(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3)
-        # (uhs-w_1) reciprocal vector 1
-        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_s_3 = cos(uhs_q_3_t)
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_r0_y = uhs_c_2*uhs_c_3_t*uhs_c_3_t*uhs_root_2 + uhs_c_2*uhs_root_2*uhs_s_3*uhs_s_3
-        # (uhs-w_3) reciprocal vector 3
-        uhs_w_3_t = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x
-        uhs_w_3_t_2 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y
-        uhs_w_3_t_3 = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z
-        # (uhs-H_a_3) moment of the column's unit force about the platform origin
-        uhs_H_a_3_x = uhs_q_in_base_y*uhs_w_3_t_3 - uhs_q_in_base_z*uhs_w_3_t_2
-        uhs_H_a_3_y = uhs_q_in_base_z*uhs_w_3_t - uhs_q_in_base_x*uhs_w_3_t_3
-        uhs_H_a_3_z = uhs_q_in_base_x*uhs_w_3_t_2 - uhs_q_in_base_y*uhs_w_3_t
-        # (spread) rms distance of the platform points from their centroid
-        uhs_spread_t = b_c_x - uhs_platform_point_x
-        uhs_spread_t_2 = b_c_y - uhs_platform_point_y
-        uhs_spread_t_3 = b_c_z - uhs_platform_point_z
-        uhs_spread_t_4 = (
-        uhs_spread_t*uhs_spread_t + uhs_spread_t_2*uhs_spread_t_2 + uhs_spread_t_3*uhs_spread_t_3
+        uhs_v_1_in_axes2_z = (
+        -uhs_c_2*uhs_c_3*uhs_c_3*uhs_root_2 - uhs_c_2*uhs_root_2*uhs_s_3*uhs_s_3
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_pivot_size = abs(uhs_rho2_1)
-        # (uhs-rho2_2) squared amplitude
-        uhs_pivot_size_2 = abs(uhs_rho2_2)
-        # (uhs-w_1) reciprocal vector 1
-        uhs_pivot_size_3 = abs(uhs_root_2)
-        uhs_pivot_size_4 = abs(uhs_v_1_r0_y)
+        # (uhs-w_3) reciprocal vector 3
+        inv_uhs_root_2 = 1.0/uhs_root_2
+        uhs_w_3_x = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_x
+        uhs_w_3_y = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_y
+        uhs_w_3_z = inv_uhs_joint3_pitch*inv_uhs_root_2*uhs_S_z
         # (uhs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        uhs_pivot_size = abs(uhs_rho2_1)
+        uhs_pivot_size_2 = abs(uhs_rho2_2)
+        uhs_pivot_size_3 = abs(uhs_root_2)
+        uhs_pivot_size_4 = abs(uhs_v_1_in_axes2_z)
         uhs_least_pivots = (
         least(least(least(inv_uhs_size*uhs_pivot_size_3, inv_uhs_size*uhs_pivot_size_4),
-            sqrt(inv_uhs_size_t_3*uhs_pivot_size)), sqrt(inv_uhs_size_t_3*uhs_pivot_size_2))
+            sqrt(inv_uhs_size_t*uhs_pivot_size)), sqrt(inv_uhs_size_t*uhs_pivot_size_2))
+        )
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
+        uhs_H_a_3_x = uhs_q_y*uhs_w_3_z - uhs_q_z*uhs_w_3_y
+        uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
+        uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
+        # (spread) rms distance of the platform points from their centroid
+        uhs_spread_t = b_c_in_platform_x - uhs_platform_point_x
+        uhs_spread_t_2 = b_c_in_platform_y - uhs_platform_point_y
+        uhs_spread_t_3 = b_c_in_platform_z - uhs_platform_point_z
+        uhs_spread_t_4 = (
+        uhs_spread_t*uhs_spread_t + uhs_spread_t_2*uhs_spread_t_2 + uhs_spread_t_3*uhs_spread_t_3
         )
         clear = (
         clear & m.every(leg, (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) &
             (abs(uhs_rho2_2) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) >
-            _TOLERANCE * uhs_size) & (abs(uhs_v_1_r0_y) > _TOLERANCE * uhs_size))
+            _TOLERANCE * uhs_size) & (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size))
         )
         sums = m.added(sums, leg, (
         uhs_spread_t_4,
         ))
-        out_H[_H_uhs[0][leg]] = uhs_w_3_t
-        out_H[_H_uhs[1][leg]] = uhs_w_3_t_2
-        out_H[_H_uhs[2][leg]] = uhs_w_3_t_3
+        # (uhs-w_3) reciprocal vector 3
+        out_H[_H_uhs[0][leg]] = uhs_w_3_x
+        out_H[_H_uhs[1][leg]] = uhs_w_3_y
+        out_H[_H_uhs[2][leg]] = uhs_w_3_z
+        # (uhs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_uhs[3][leg]] = uhs_H_a_3_x
         out_H[_H_uhs[4][leg]] = uhs_H_a_3_y
         out_H[_H_uhs[5][leg]] = uhs_H_a_3_z
+        # (uhs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_uhs[0][leg]] = uhs_least_pivots
-    total_uhs, = sums
+    spread_uhs, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_uhs)
+    spread = spread_t*sqrt(spread_uhs)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

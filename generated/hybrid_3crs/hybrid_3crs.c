@@ -498,20 +498,20 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_crs = 0;
-    real total_crs_x = 0;
-    real total_crs_y = 0;
-    real total_crs_z = 0;
-    real total_crs_xx = 0;
-    real total_crs_xy = 0;
-    real total_crs_xz = 0;
-    real total_crs_yy = 0;
-    real total_crs_yz = 0;
-    real total_crs_zz = 0;
-    real total_crs_x_2 = 0;
-    real total_crs_y_2 = 0;
-    real total_crs_z_2 = 0;
-    real total_crs_2 = 0;
+    real m_star_crs = 0;
+    real h_star_crs_in_platform_x = 0;
+    real h_star_crs_in_platform_y = 0;
+    real h_star_crs_in_platform_z = 0;
+    real J_star_crs_in_platform_xx = 0;
+    real J_star_crs_in_platform_xy = 0;
+    real J_star_crs_in_platform_xz = 0;
+    real J_star_crs_in_platform_yy = 0;
+    real J_star_crs_in_platform_yz = 0;
+    real J_star_crs_in_platform_zz = 0;
+    real b_c_crs_in_platform_x = 0;
+    real b_c_crs_in_platform_y = 0;
+    real b_c_crs_in_platform_z = 0;
+    real legs_size_crs = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -588,37 +588,61 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         const real crs_size_t = crs_platform_joint_offset_x*crs_platform_joint_offset_x;
         const real crs_size_t_2 = R(0.30250000000000005) + crs_size_t;
         const real crs_size = root(crs_size_t_2);
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_crs_size_t = 1/crs_size_t;
-        /* (crs-rho_tip_3) connection point to the centre of mass of link 3 */
-        const real crs_rho_tip_3_x = crs_link3_centre_of_mass_x - crs_platform_joint_offset_x;
-        /* (crs-h_3) first moment of link 3 about the connection point */
-        const real crs_h_3_x = crs_link3_mass*crs_rho_tip_3_x;
-        const real crs_h_3_y = crs_link3_centre_of_mass_y*crs_link3_mass;
-        const real crs_h_3_z = crs_link3_centre_of_mass_z*crs_link3_mass;
-        /* (crs-J_3) inertia tensor of link 3 about the connection point */
-        const real crs_J_3_t = crs_rho_tip_3_x*crs_rho_tip_3_x;
-        const real crs_J_3_t_2 = crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_y;
-        const real crs_J_3_t_3 = crs_link3_centre_of_mass_z*crs_link3_centre_of_mass_z;
-        const real crs_J_3_t_4 = crs_J_3_t + crs_J_3_t_2 + crs_J_3_t_3;
-        const real crs_J_3_xx = crs_link3_inertia_xx - crs_link3_mass*(crs_J_3_t - crs_J_3_t_4);
-        const real crs_J_3_xy = crs_link3_inertia_xy -
-            crs_link3_centre_of_mass_y*crs_link3_mass*crs_rho_tip_3_x;
-        const real crs_J_3_xz = crs_link3_inertia_xz -
-            crs_link3_centre_of_mass_z*crs_link3_mass*crs_rho_tip_3_x;
-        const real crs_J_3_yy = crs_link3_inertia_yy - crs_link3_mass*(crs_J_3_t_2 - crs_J_3_t_4);
-        const real crs_J_3_yz = crs_link3_inertia_yz -
-            crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass;
-        const real crs_J_3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 - crs_J_3_t_4);
         /* (crs-h_2) first moment of link 2 about the origin of link 2 */
-        const real crs_h_2_x = crs_link2_centre_of_mass_x*crs_link2_mass;
-        const real crs_h_2_y = crs_link2_centre_of_mass_y*crs_link2_mass;
-        const real crs_h_2_z = crs_link2_centre_of_mass_z*crs_link2_mass;
+        const real crs_h_2_in_spec1_x = crs_link2_centre_of_mass_x*crs_link2_mass;
+        const real crs_h_2_in_spec1_y = crs_link2_centre_of_mass_y*crs_link2_mass;
+        const real crs_h_2_in_spec1_z = crs_link2_centre_of_mass_z*crs_link2_mass;
         /* (crs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real crs_J_2_t = crs_link2_centre_of_mass_x*crs_link2_centre_of_mass_x;
         const real crs_J_2_t_2 = crs_J_2_t + crs_link2_centre_of_mass_y*crs_link2_centre_of_mass_y
             + crs_link2_centre_of_mass_z*crs_link2_centre_of_mass_z;
-        const real crs_J_2_xx = crs_link2_inertia_xx - crs_link2_mass*(crs_J_2_t - crs_J_2_t_2);
+        const real crs_J_2_in_spec1_xx = crs_link2_inertia_xx - crs_link2_mass*(crs_J_2_t -
+            crs_J_2_t_2);
+        /* (crs-rho_tip_3) connection point to the centre of mass of link 3 */
+        const real crs_rho_tip_3_in_spec3_x = crs_link3_centre_of_mass_x -
+            crs_platform_joint_offset_x;
+        /* (crs-h_3) first moment of link 3 about the connection point */
+        const real crs_h_3_in_spec3_x = crs_link3_mass*crs_rho_tip_3_in_spec3_x;
+        const real crs_h_3_in_spec3_y = crs_link3_centre_of_mass_y*crs_link3_mass;
+        const real crs_h_3_in_spec3_z = crs_link3_centre_of_mass_z*crs_link3_mass;
+        /* (crs-J_3) inertia tensor of link 3 about the connection point */
+        const real crs_J_3_t = crs_rho_tip_3_in_spec3_x*crs_rho_tip_3_in_spec3_x;
+        const real crs_J_3_t_2 = crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_y;
+        const real crs_J_3_t_3 = crs_link3_centre_of_mass_z*crs_link3_centre_of_mass_z;
+        const real crs_J_3_t_4 = crs_J_3_t + crs_J_3_t_2 + crs_J_3_t_3;
+        const real crs_J_3_in_spec3_xx = crs_link3_inertia_xx - crs_link3_mass*(crs_J_3_t -
+            crs_J_3_t_4);
+        const real crs_J_3_in_spec3_xy = crs_link3_inertia_xy -
+            crs_link3_centre_of_mass_y*crs_link3_mass*crs_rho_tip_3_in_spec3_x;
+        const real crs_J_3_in_spec3_xz = crs_link3_inertia_xz -
+            crs_link3_centre_of_mass_z*crs_link3_mass*crs_rho_tip_3_in_spec3_x;
+        const real crs_J_3_in_spec3_yy = crs_link3_inertia_yy - crs_link3_mass*(crs_J_3_t_2 -
+            crs_J_3_t_4);
+        const real crs_J_3_in_spec3_yz = crs_link3_inertia_yz -
+            crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass;
+        const real crs_J_3_in_spec3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 -
+            crs_J_3_t_4);
+        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_crs_size_t = 1/crs_size_t;
+        /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real crs_g_in_axes1_z = crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y +
+            crs_base_frame_zx*gravity_z;
+        /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real crs_acc_3_t = crs_base_frame_xy*gravity_x + crs_base_frame_yy*gravity_y +
+            crs_base_frame_zy*gravity_z;
+        const real crs_acc_3_t_2 = crs_base_frame_xz*gravity_x + crs_base_frame_yz*gravity_y +
+            crs_base_frame_zz*gravity_z;
+        /* (crs-trace_J_3) half the trace of that inertia tensor */
+        const real crs_trace_J_3 = R(0.5)*crs_J_3_in_spec3_xx + R(0.5)*crs_J_3_in_spec3_yy +
+            R(0.5)*crs_J_3_in_spec3_zz;
+        /* (crs-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real crs_Sigma_3_in_axes3_xx = crs_trace_J_3 - crs_J_3_in_spec3_xx;
+        const real crs_Sigma_3_in_axes3_yy = crs_trace_J_3 - crs_J_3_in_spec3_yy;
+        const real crs_Sigma_3_in_axes3_zz = crs_trace_J_3 - crs_J_3_in_spec3_zz;
+        /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_crs_size_t_2 = 1/crs_size_t_2;
+        const real inv_crs_size = 1/crs_size;
         /* (h_star) first moment about the platform origin */
         const real crs_h_star_t = crs_link3_mass*crs_platform_point_x;
         const real crs_h_star_t_2 = crs_link3_mass*crs_platform_point_y;
@@ -634,44 +658,26 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         const real crs_J_star_t_8 = crs_link3_mass*(crs_J_star_t_2 - crs_J_star_t_4);
         const real crs_J_star_t_9 = crs_link3_mass*crs_platform_point_y*crs_platform_point_z;
         const real crs_J_star_t_10 = crs_link3_mass*(crs_J_star_t_3 - crs_J_star_t_4);
-        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real crs_g_r0_x = crs_base_frame_xy*gravity_x + crs_base_frame_yy*gravity_y +
-            crs_base_frame_zy*gravity_z;
-        const real crs_g_r0_y = crs_base_frame_xz*gravity_x + crs_base_frame_yz*gravity_y +
-            crs_base_frame_zz*gravity_z;
-        const real crs_g_r0_z = crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y +
-            crs_base_frame_zx*gravity_z;
-        /* (crs-trace_J_3) half the trace of that inertia tensor */
-        const real crs_trace_J_3 = R(0.5)*crs_J_3_xx + R(0.5)*crs_J_3_yy + R(0.5)*crs_J_3_zz;
-        /* (crs-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real crs_Sigma_3_xx = crs_trace_J_3 - crs_J_3_xx;
-        const real crs_Sigma_3_yy = crs_trace_J_3 - crs_J_3_yy;
-        const real crs_Sigma_3_zz = crs_trace_J_3 - crs_J_3_zz;
         /* (potential) potential energy */
-        const real crs_b_r0_x = crs_base_frame_xy*crs_base_point_x +
+        const real crs_potential_t = crs_base_frame_xy*crs_base_point_x +
             crs_base_frame_yy*crs_base_point_y + crs_base_frame_zy*crs_base_point_z;
-        const real crs_b_r0_y = crs_base_frame_xz*crs_base_point_x +
+        const real crs_potential_t_2 = crs_base_frame_xz*crs_base_point_x +
             crs_base_frame_yz*crs_base_point_y + crs_base_frame_zz*crs_base_point_z;
-        const real crs_b_r0_z = crs_base_frame_xx*crs_base_point_x +
+        const real crs_b_in_axes1_z = crs_base_frame_xx*crs_base_point_x +
             crs_base_frame_yx*crs_base_point_y + crs_base_frame_zx*crs_base_point_z;
-        /* (crs-rho2_1) squared amplitude */
-        const real inv_crs_size_t_2 = 1/crs_size_t_2;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real inv_crs_size = 1/crs_size;
-        model->crs_J_2_xx[leg] = crs_J_2_xx;
-        model->crs_J_3_xx[leg] = crs_J_3_xx;
-        model->crs_J_3_xy[leg] = crs_J_3_xy;
-        model->crs_J_3_xz[leg] = crs_J_3_xz;
-        model->crs_J_3_yy[leg] = crs_J_3_yy;
-        model->crs_J_3_yz[leg] = crs_J_3_yz;
-        model->crs_J_3_zz[leg] = crs_J_3_zz;
-        model->crs_Sigma_3_xx[leg] = crs_Sigma_3_xx;
-        model->crs_Sigma_3_yy[leg] = crs_Sigma_3_yy;
-        model->crs_Sigma_3_zz[leg] = crs_Sigma_3_zz;
-        model->crs_b_r0_x[leg] = crs_b_r0_x;
-        model->crs_b_r0_y[leg] = crs_b_r0_y;
-        model->crs_b_r0_z[leg] = crs_b_r0_z;
+        model->crs_J_2_in_spec1_xx[leg] = crs_J_2_in_spec1_xx;
+        model->crs_J_3_in_spec3_xx[leg] = crs_J_3_in_spec3_xx;
+        model->crs_J_3_in_spec3_xy[leg] = crs_J_3_in_spec3_xy;
+        model->crs_J_3_in_spec3_xz[leg] = crs_J_3_in_spec3_xz;
+        model->crs_J_3_in_spec3_yy[leg] = crs_J_3_in_spec3_yy;
+        model->crs_J_3_in_spec3_yz[leg] = crs_J_3_in_spec3_yz;
+        model->crs_J_3_in_spec3_zz[leg] = crs_J_3_in_spec3_zz;
+        model->crs_Sigma_3_in_axes3_xx[leg] = crs_Sigma_3_in_axes3_xx;
+        model->crs_Sigma_3_in_axes3_yy[leg] = crs_Sigma_3_in_axes3_yy;
+        model->crs_Sigma_3_in_axes3_zz[leg] = crs_Sigma_3_in_axes3_zz;
+        model->crs_acc_3_t[leg] = crs_acc_3_t;
+        model->crs_acc_3_t_2[leg] = crs_acc_3_t_2;
+        model->crs_b_in_axes1_z[leg] = crs_b_in_axes1_z;
         model->crs_base_frame_xx[leg] = crs_base_frame_xx;
         model->crs_base_frame_xy[leg] = crs_base_frame_xy;
         model->crs_base_frame_xz[leg] = crs_base_frame_xz;
@@ -686,15 +692,13 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         model->crs_base_point_z[leg] = crs_base_point_z;
         model->crs_branch_1[leg] = crs_branch_1;
         model->crs_branch_2[leg] = crs_branch_2;
-        model->crs_g_r0_x[leg] = crs_g_r0_x;
-        model->crs_g_r0_y[leg] = crs_g_r0_y;
-        model->crs_g_r0_z[leg] = crs_g_r0_z;
-        model->crs_h_2_x[leg] = crs_h_2_x;
-        model->crs_h_2_y[leg] = crs_h_2_y;
-        model->crs_h_2_z[leg] = crs_h_2_z;
-        model->crs_h_3_x[leg] = crs_h_3_x;
-        model->crs_h_3_y[leg] = crs_h_3_y;
-        model->crs_h_3_z[leg] = crs_h_3_z;
+        model->crs_g_in_axes1_z[leg] = crs_g_in_axes1_z;
+        model->crs_h_2_in_spec1_x[leg] = crs_h_2_in_spec1_x;
+        model->crs_h_2_in_spec1_y[leg] = crs_h_2_in_spec1_y;
+        model->crs_h_2_in_spec1_z[leg] = crs_h_2_in_spec1_z;
+        model->crs_h_3_in_spec3_x[leg] = crs_h_3_in_spec3_x;
+        model->crs_h_3_in_spec3_y[leg] = crs_h_3_in_spec3_y;
+        model->crs_h_3_in_spec3_z[leg] = crs_h_3_in_spec3_z;
         model->crs_joint3_offset_x[leg] = crs_joint3_offset_x;
         model->crs_link2_mass[leg] = crs_link2_mass;
         model->crs_link3_mass[leg] = crs_link3_mass;
@@ -702,71 +706,79 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         model->crs_platform_point_x[leg] = crs_platform_point_x;
         model->crs_platform_point_y[leg] = crs_platform_point_y;
         model->crs_platform_point_z[leg] = crs_platform_point_z;
+        model->crs_potential_t[leg] = crs_potential_t;
+        model->crs_potential_t_2[leg] = crs_potential_t_2;
         model->crs_size[leg] = crs_size;
         model->crs_size_t[leg] = crs_size_t;
         model->crs_size_t_2[leg] = crs_size_t_2;
         model->inv_crs_size[leg] = inv_crs_size;
         model->inv_crs_size_t[leg] = inv_crs_size_t;
         model->inv_crs_size_t_2[leg] = inv_crs_size_t_2;
-        total_crs += leg < 3 ? crs_link3_mass : 0;
-        total_crs_x += leg < 3 ? crs_h_star_t : 0;
-        total_crs_y += leg < 3 ? crs_h_star_t_2 : 0;
-        total_crs_z += leg < 3 ? crs_h_star_t_3 : 0;
-        total_crs_xx += leg < 3 ? crs_J_star_t_5 : 0;
-        total_crs_xy += leg < 3 ? crs_J_star_t_6 : 0;
-        total_crs_xz += leg < 3 ? crs_J_star_t_7 : 0;
-        total_crs_yy += leg < 3 ? crs_J_star_t_8 : 0;
-        total_crs_yz += leg < 3 ? crs_J_star_t_9 : 0;
-        total_crs_zz += leg < 3 ? crs_J_star_t_10 : 0;
-        total_crs_x_2 += leg < 3 ? crs_platform_point_x : 0;
-        total_crs_y_2 += leg < 3 ? crs_platform_point_y : 0;
-        total_crs_z_2 += leg < 3 ? crs_platform_point_z : 0;
-        total_crs_2 += leg < 3 ? crs_size_t_2 : 0;
+        m_star_crs += leg < 3 ? crs_link3_mass : 0;
+        h_star_crs_in_platform_x += leg < 3 ? crs_h_star_t : 0;
+        h_star_crs_in_platform_y += leg < 3 ? crs_h_star_t_2 : 0;
+        h_star_crs_in_platform_z += leg < 3 ? crs_h_star_t_3 : 0;
+        J_star_crs_in_platform_xx += leg < 3 ? -crs_J_star_t_5 : 0;
+        J_star_crs_in_platform_xy += leg < 3 ? -crs_J_star_t_6 : 0;
+        J_star_crs_in_platform_xz += leg < 3 ? -crs_J_star_t_7 : 0;
+        J_star_crs_in_platform_yy += leg < 3 ? -crs_J_star_t_8 : 0;
+        J_star_crs_in_platform_yz += leg < 3 ? -crs_J_star_t_9 : 0;
+        J_star_crs_in_platform_zz += leg < 3 ? -crs_J_star_t_10 : 0;
+        b_c_crs_in_platform_x += leg < 3 ? crs_platform_point_x : 0;
+        b_c_crs_in_platform_y += leg < 3 ? crs_platform_point_y : 0;
+        b_c_crs_in_platform_z += leg < 3 ? crs_platform_point_z : 0;
+        legs_size_crs += leg < 3 ? crs_size_t_2 : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_crs;
+    const real m_star = m_star_crs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_crs_x;
-    const real h_star_y = h_star_t_2 + total_crs_y;
-    const real h_star_z = h_star_t_3 + total_crs_z;
+    const real h_star_in_platform_x = h_star_crs_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_crs_in_platform_y + h_star_t_2;
+    const real h_star_in_platform_z = h_star_crs_in_platform_z + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_crs_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_crs_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_crs_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_crs_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_crs_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_crs_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_crs_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_crs_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_crs_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_crs_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_crs_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_crs_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_crs_x_2;
-    const real b_c_y = R(0.3333333333333333)*total_crs_y_2;
-    const real b_c_z = R(0.3333333333333333)*total_crs_z_2;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_crs_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_crs_in_platform_y;
+    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_crs_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_crs_2);
+    const real legs_size = root(legs_size_crs)*spread_t;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1349,41 +1361,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1394,26 +1412,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1432,21 +1459,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1464,27 +1491,27 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -1502,371 +1529,388 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 -
-            crs_base_frame_xy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 -
-            crs_base_frame_yy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 -
-            crs_base_frame_zy*crs_c_1;
-        const real crs_w_1_t = crs_s_1*crs_s_3;
-        const real crs_w_1_t_2 = crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_in_base_x = crs_base_frame_xy*crs_w_1_t +
-            crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_y = crs_base_frame_yy*crs_w_1_t +
-            crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_z = crs_base_frame_zy*crs_w_1_t +
-            crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x;
-        const real inv_crs_v_1_z = 1/crs_v_1_z;
-        /* (crs-w_3) reciprocal vector 3 */
-        const real inv_crs_r_1_t_2 = 1/crs_r_1_t_2;
-        const real crs_w_3_t = crs_c_3*inv_crs_r_1_t_2;
-        const real crs_w_3_t_2 = crs_s_3*inv_crs_r_1_t_2;
-        /* (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real crs_d_alpha_3_t = crs_s_3*inv_crs_v_1_z;
-        const real crs_d_alpha_3_t_2 = crs_c_3*inv_crs_v_1_z;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2;
-        const real crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t;
-        const real crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3;
-        /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real crs_J_3_xz = m->crs_J_3_xz[i];
-        const real crs_J_3_yz = m->crs_J_3_yz[i];
-        const real crs_d_Gamma_3_t = inv_crs_v_1_z*(crs_J_3_xz*crs_s_3 - crs_J_3_yz*crs_c_3);
-        const real crs_J_3_zz = m->crs_J_3_zz[i];
-        const real crs_d_Gamma_3_t_2 = crs_J_3_zz*inv_crs_r_1_t_2;
-        const real crs_h_3_y = m->crs_h_3_y[i];
-        const real crs_d_Gamma_3_x = crs_c_3*crs_d_Gamma_3_t_2 - crs_h_3_y;
-        const real crs_h_3_x = m->crs_h_3_x[i];
-        const real crs_d_Gamma_3_y = crs_h_3_x + crs_d_Gamma_3_t_2*crs_s_3;
-        /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
-           inertia and weight */
-        const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_r_1_t_2;
-        const real crs__r1_y_2 = crs_d_Gamma_2_t*crs_s_3 - crs_c_3*crs_link2_mass;
-        /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real crs_J_2_xx = m->crs_J_2_xx[i];
-        const real crs_J_3_xx = m->crs_J_3_xx[i];
-        const real crs_J_3_xy = m->crs_J_3_xy[i];
-        const real crs_J_3_yy = m->crs_J_3_yy[i];
-        const real crs_d_Gamma_1_x = crs_c_3*crs_h_3_x + crs_h_3_y*crs_s_3 +
-            inv_crs_v_1_z*(crs_J_2_xx + crs_s_3*(crs_J_3_xx*crs_s_3 - crs_J_3_xy*crs_c_3) -
-            crs_c_3*(crs_J_3_xy*crs_s_3 - crs_J_3_yy*crs_c_3));
-        /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real crs_d_c_xx = crs_h_3_y*crs_w_3_t - crs__r1_x*(crs_c_3*crs_d_Gamma_2_t +
-            crs_link2_mass*crs_s_3) - crs_d_Gamma_3_x*crs_w_3_t;
-        const real crs_d_c_xy = crs_h_3_y*crs_w_3_t_2 - crs__r1_x*crs__r1_y_2 -
-            crs_d_Gamma_3_y*crs_w_3_t;
-        const real crs_h_3_z = m->crs_h_3_z[i];
-        const real crs_d_c_xz = crs_d_alpha_3_t_2*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t;
-        const real crs_d_c_yz = crs_d_alpha_3_t*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t_2;
-        /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real crs_Q_t = crs_d_c_xx + crs__r1_y*crs__r1_y_2 + crs_d_Gamma_3_y*crs_w_3_t_2 +
-            crs_h_3_x*crs_w_3_t_2;
-        const real crs_Q_t_2 = R(0.5)*crs_Q_t;
-        const real crs_Q_t_3 = crs_d_c_xx + crs_d_Gamma_1_x*inv_crs_v_1_z +
-            crs_d_alpha_3_t*crs_h_3_y + crs_d_alpha_3_t_2*crs_h_3_x;
-        const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
-        const real crs_Q_t_5 = axis_x_crs_axes3_x*crs_d_c_xy +
-            axis_z_crs_axes3_in_base_x*crs_d_c_yz - axis_y_crs_axes3_in_base_x*crs_Q_t_2;
-        const real crs_Q_t_6 = axis_x_crs_axes3_y*crs_d_c_xy +
-            axis_z_crs_axes3_in_base_y*crs_d_c_yz - axis_y_crs_axes3_in_base_y*crs_Q_t_2;
-        const real crs_Q_t_7 = axis_x_crs_axes3_z*crs_d_c_xy +
-            axis_z_crs_axes3_in_base_z*crs_d_c_yz - axis_y_crs_axes3_in_base_z*crs_Q_t_2;
-        const real crs_Q_t_8 = axis_z_crs_axes3_in_base_x*crs_Q_t_4 -
-            axis_x_crs_axes3_x*crs_d_c_xz;
-        const real crs_Q_t_9 = axis_z_crs_axes3_in_base_y*crs_Q_t_4 -
-            axis_x_crs_axes3_y*crs_d_c_xz;
-        const real crs_Q_t_10 = axis_z_crs_axes3_in_base_z*crs_Q_t_4 -
-            axis_x_crs_axes3_z*crs_d_c_xz;
-        const real crs_Q_t_11 = axis_y_crs_axes3_in_base_x*crs_Q_t_5 -
-            axis_z_crs_axes3_in_base_x*crs_Q_t_8;
-        const real crs_Q_t_12 = 2*crs_Q_t_11 + crs_d_c_xx;
-        const real crs_Q_t_13 = axis_y_crs_axes3_in_base_x*crs_Q_t_6 +
-            axis_y_crs_axes3_in_base_y*crs_Q_t_5 - axis_z_crs_axes3_in_base_x*crs_Q_t_9 -
-            axis_z_crs_axes3_in_base_y*crs_Q_t_8;
-        const real crs_Q_t_14 = axis_y_crs_axes3_in_base_x*crs_Q_t_7 +
-            axis_y_crs_axes3_in_base_z*crs_Q_t_5 - axis_z_crs_axes3_in_base_x*crs_Q_t_10 -
-            axis_z_crs_axes3_in_base_z*crs_Q_t_8;
-        const real crs_Q_t_15 = axis_y_crs_axes3_in_base_y*crs_Q_t_6 -
-            axis_z_crs_axes3_in_base_y*crs_Q_t_9;
-        const real crs_Q_t_16 = 2*crs_Q_t_15 + crs_d_c_xx;
-        const real crs_Q_t_17 = axis_y_crs_axes3_in_base_y*crs_Q_t_7 +
-            axis_y_crs_axes3_in_base_z*crs_Q_t_6 - axis_z_crs_axes3_in_base_y*crs_Q_t_10 -
-            axis_z_crs_axes3_in_base_z*crs_Q_t_9;
-        const real crs_Q_t_18 = axis_y_crs_axes3_in_base_z*crs_Q_t_7 -
-            axis_z_crs_axes3_in_base_z*crs_Q_t_10;
-        const real crs_Q_t_19 = 2*crs_Q_t_18 + crs_d_c_xx;
-        /* (M_ta) coupling block of M */
-        const real crs_M_ta_t = crs_Q_t_13*crs_q_in_base_z;
-        const real crs_M_ta_t_2 = crs_Q_t_14*crs_q_in_base_y;
-        const real crs_M_ta_t_3 = crs_M_ta_t - crs_M_ta_t_2;
-        const real crs_M_ta_t_4 = crs_Q_t_12*crs_q_in_base_z - crs_Q_t_14*crs_q_in_base_x;
-        const real crs_M_ta_t_5 = crs_Q_t_12*crs_q_in_base_y - crs_Q_t_13*crs_q_in_base_x;
-        const real crs_M_ta_t_6 = crs_Q_t_16*crs_q_in_base_z - crs_Q_t_17*crs_q_in_base_y;
-        const real crs_M_ta_t_7 = crs_Q_t_17*crs_q_in_base_x;
-        const real crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7;
-        const real crs_M_ta_t_9 = crs_Q_t_13*crs_q_in_base_y - crs_Q_t_16*crs_q_in_base_x;
-        const real crs_M_ta_t_10 = crs_Q_t_17*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_y;
-        const real crs_M_ta_t_11 = crs_Q_t_14*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_x;
-        const real crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real crs_M_aa_t = crs_M_ta_t_6*crs_q_in_base_z - crs_M_ta_t_10*crs_q_in_base_y;
-        const real crs_M_aa_t_2 = crs_M_ta_t_8*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_y;
-        const real crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_in_base_y + crs_M_ta_t_9*crs_q_in_base_z;
-        const real crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_x;
-        const real crs_M_aa_t_5 = crs_M_ta_t_12*crs_q_in_base_x + crs_M_ta_t_5*crs_q_in_base_z;
-        const real crs_M_aa_t_6 = crs_M_ta_t_5*crs_q_in_base_y - crs_M_ta_t_9*crs_q_in_base_x;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z;
+        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
         const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y;
+        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
+        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
         const real t_dot_x = s[12*w + j];
         const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        const real crs_S_dot_r0_x = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy
-            + crs_S_dot_z*crs_base_frame_zy;
-        const real crs_S_dot_r0_y = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz
-            + crs_S_dot_z*crs_base_frame_zz;
-        /* (crs-qd_3) rate of joint 3 */
-        const real crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1);
-        const real crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1);
-        const real crs_qd_3_t = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t;
+        /* (crs-r_1) from joint 1 to the connection point, along the links */
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
+        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
+        /* (crs-w_1) reciprocal vector 1 */
+        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
+        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
+        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
+        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
+        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
+        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
+        /* (crs-w_2) reciprocal vector 2 */
+        const real crs_w_2_t = crs_s_1*crs_s_3;
+        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
+        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
+            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
+        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
+            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
+        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
+            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
+        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
+        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
+        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
+        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
+        const real crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z;
+        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
+        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
+        const real crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_x*crs_w_2_in_axes3_y;
+        const real crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_y*crs_w_2_in_axes3_y;
+        const real crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_z*crs_w_2_in_axes3_y;
+        /* (crs-w_3) reciprocal vector 3 */
+        const real crs_w_3_in_axes3_x = crs_c_3_t*inv_crs_d_4_in_axes1_z;
+        const real crs_w_3_in_axes3_y = crs_s_3*inv_crs_d_4_in_axes1_z;
+        /* (crs-qd_1) rate of joint 1 */
+        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy;
+        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz;
+        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
+        /* (crs-qd_2) rate of joint 2 */
+        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
+            crs_qd_1_t*crs_s_1);
+        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
         /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_t = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t_2 = crs_c_3*crs_qd_1;
-        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3;
-        const real crs_zeta_3_y = crs_omega_1_t*crs_qd_3;
+        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
+        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
+        /* (crs-W_3) centripetal tensor of link 3 */
+        const real crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t;
+        const real crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t;
         /* (crs-u_1) centripetal acceleration of the connection point */
         const real crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
         const real crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
         const real crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
-        /* (crs-W_3) centripetal tensor of link 3 */
-        const real crs_W_3_t = crs_omega_1_t*crs_omega_1_t;
-        const real crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2;
-        const real crs_W_3_t_3 = crs_qd_3*crs_qd_3;
-        const real crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2;
+        const real crs_u_1_in_axes3_x = axis_x_crs_axes3_x*crs_u_1_x +
+            axis_x_crs_axes3_y*crs_u_1_y + axis_x_crs_axes3_z*crs_u_1_z;
+        const real crs_u_1_in_axes3_y = axis_y_crs_axes3_x*crs_u_1_x +
+            axis_y_crs_axes3_y*crs_u_1_y + axis_y_crs_axes3_z*crs_u_1_z;
+        const real crs_u_1_in_axes3_z = axis_z_crs_axes3_x*crs_u_1_x +
+            axis_z_crs_axes3_y*crs_u_1_y + axis_z_crs_axes3_z*crs_u_1_z;
+        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t;
         /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3;
-        const real crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x;
-        const real crs_bias_x = crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 -
-            crs_bias_t_3*crs_omega_1_t_2;
-        const real crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_z = -crs_bias_t_2*crs_omega_1_t -
-            crs_platform_joint_offset_x*crs_zeta_3_y - 2*crs_qd_3_t*(crs_c_3*crs_omega_1_t -
-            crs_omega_1_t_2*crs_s_3);
-        /* (crs-u_1) centripetal acceleration of the connection point */
-        const real crs_u_1_tip_x = axis_x_crs_axes3_x*crs_u_1_x + axis_x_crs_axes3_y*crs_u_1_y +
-            axis_x_crs_axes3_z*crs_u_1_z;
-        const real crs_u_1_tip_y = axis_y_crs_axes3_in_base_x*crs_u_1_x +
-            axis_y_crs_axes3_in_base_y*crs_u_1_y + axis_y_crs_axes3_in_base_z*crs_u_1_z;
-        const real crs_u_1_tip_z = axis_z_crs_axes3_in_base_x*crs_u_1_x +
-            axis_z_crs_axes3_in_base_y*crs_u_1_y + axis_z_crs_axes3_in_base_z*crs_u_1_z;
+        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
+            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
+        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
+        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
+        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
+            crs_bias_t_3*crs_omega_1_t;
+        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
+            crs_bias_t_3*crs_omega_1_in_axes3_x;
+        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
+            crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
+            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3);
         /* (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real crs_rel_o_x = crs_u_1_tip_x - crs_bias_x;
-        const real crs_rel_o_y = crs_u_1_tip_y - crs_bias_y;
-        const real crs_rel_o_z = crs_u_1_tip_z - crs_bias_z;
+        const real crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x;
+        const real crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - crs_bias_in_axes3_y;
+        const real crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - crs_bias_in_axes3_z;
+        /* (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z;
         /* (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real crs_qdd_1_o = crs_rel_o_z*inv_crs_v_1_z;
-        const real crs_qdd_3_o = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_o_x - crs_rel_o_y*crs_s_3);
+        const real crs_qdd_3_o = -inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_o_in_axes3_x -
+            crs_rel_o_in_axes3_y*crs_s_3);
         /* (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real crs_alpha_1_o_t = crs_qdd_1_o*crs_s_3;
-        const real crs_alpha_1_o_t_2 = crs_c_3*crs_qdd_1_o;
+        const real crs_alpha_1_o_in_axes3_x = crs_qdd_1_o*crs_s_3;
+        const real crs_alpha_1_o_t = crs_c_3_t*crs_qdd_1_o;
+        /* (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real crs_d_alpha_3_in_axes3_xz = crs_s_3*crs_w_1_in_axes3_z;
+        const real crs_d_alpha_3_t = crs_c_3_t*crs_w_1_in_axes3_z;
         /* (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real crs_alpha_3_o_x = crs_alpha_1_o_t + crs_zeta_3_x;
-        const real crs_alpha_3_o_y = crs_zeta_3_y - crs_alpha_1_o_t_2;
+        const real crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x;
+        const real crs_alpha_3_o_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_o_t;
         /* (crs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real crs_B_3_o_xy = crs_qdd_3_o - crs_W_3_xy;
-        const real crs_B_3_o_yx = -crs_W_3_xy - crs_qdd_3_o;
-        const real crs_B_3_o_zx = -crs_alpha_3_o_y - crs_zeta_3_y;
-        const real crs_B_3_o_zy = crs_alpha_3_o_x + crs_zeta_3_x;
-        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real crs_g_r0_x = m->crs_g_r0_x[i];
-        const real crs_g_r0_y = m->crs_g_r0_y[i];
-        const real crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x;
-        const real crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1;
-        const real crs_g_r0_z = m->crs_g_r0_z[i];
-        const real crs_acc_3_o_x = crs_u_1_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3;
-        const real crs_acc_3_o_y = crs_u_1_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3;
-        const real crs_acc_3_o_z = crs_u_1_tip_z - crs_g_r1_x;
-        /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real crs_Sigma_3_yy = m->crs_Sigma_3_yy[i];
-        const real crs_Sigma_3_zz = m->crs_Sigma_3_zz[i];
-        const real crs_mu_3_o_x = crs_B_3_o_yx*crs_J_3_xz + crs_B_3_o_zy*crs_Sigma_3_yy +
-            crs_J_3_yz*(crs_W_3_t_2 - crs_W_3_t_3) + crs_Sigma_3_zz*crs_alpha_1_o_t +
-            crs_acc_3_o_z*crs_h_3_y - crs_B_3_o_zx*crs_J_3_xy - crs_acc_3_o_y*crs_h_3_z;
-        const real crs_Sigma_3_xx = m->crs_Sigma_3_xx[i];
-        const real crs_mu_3_o_y = crs_B_3_o_zy*crs_J_3_xy + crs_acc_3_o_x*crs_h_3_z -
-            crs_B_3_o_xy*crs_J_3_yz - crs_B_3_o_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t -
-            crs_W_3_t_3) - crs_Sigma_3_zz*crs_alpha_1_o_t_2 - crs_acc_3_o_z*crs_h_3_x;
-        const real crs_mu_3_o_z = crs_B_3_o_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t -
-            crs_W_3_t_2) + crs_J_3_xz*crs_alpha_1_o_t + crs_acc_3_o_y*crs_h_3_x -
-            crs_B_3_o_xy*crs_Sigma_3_yy - crs_J_3_yz*crs_alpha_1_o_t_2 - crs_acc_3_o_x*crs_h_3_y;
+        const real crs_B_3_o_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_3_o;
+        const real crs_B_3_o_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3_o;
+        const real crs_B_3_o_in_axes3_zx = -crs_alpha_3_o_in_axes3_y - crs_zeta_3_in_axes3_y;
+        const real crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x;
         /* (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
-        const real crs_acc_2_o_z = crs_rel_o_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_o_y -
-            crs_qdd_3_o*crs_r_1_t;
+        const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
+        const real crs_acc_2_o_in_axes1_z = crs_qdd_3_o*crs_r_1_t + crs_rel_o_in_axes3_x*crs_s_3 -
+            crs_g_in_axes1_z - crs_c_3_t*crs_rel_o_in_axes3_y;
         /* (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real crs_f_2_o_t = crs_acc_2_o_z*crs_link2_mass;
+        const real crs_link2_mass = m->crs_link2_mass[i];
+        const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass;
+        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real crs_acc_3_t = m->crs_acc_3_t[i];
+        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
+        const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
+        const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
+        const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y -
+            crs_g_in_axes1_z*crs_s_3;
+        const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z +
+            crs_g_in_axes1_y*crs_s_3;
+        const real crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_x;
+        /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
+        const real crs_mu_3_o_t_2 = crs_omega_1_t*crs_omega_1_t;
+        const real crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t;
+        const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
+        const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
+        const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
+        const real crs_Sigma_3_in_axes3_yy = m->crs_Sigma_3_in_axes3_yy[i];
+        const real crs_Sigma_3_in_axes3_zz = m->crs_Sigma_3_in_axes3_zz[i];
+        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
+        const real crs_mu_3_o_in_axes3_x = crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz +
+            crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_o_t_2 -
+            crs_mu_3_o_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_x +
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy
+            - crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z;
+        const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
+        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+        const real crs_mu_3_o_in_axes3_y = crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy +
+            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz
+            - crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_o_t -
+            crs_mu_3_o_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_t -
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x;
+        const real crs_mu_3_o_in_axes3_z = crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+            crs_J_3_in_spec3_xy*(crs_mu_3_o_t - crs_mu_3_o_t_2) +
+            crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
+            crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
+            crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_o_t -
+            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y;
+        /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real crs_d_Gamma_3_in_axes3_z = crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*crs_s_3 -
+            crs_J_3_in_spec3_yz*crs_c_3_t);
+        const real crs_J_3_in_spec3_zz = m->crs_J_3_in_spec3_zz[i];
+        const real crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z;
+        const real crs_d_Gamma_3_in_axes3_x = crs_c_3_t*crs_d_Gamma_3_t - crs_h_3_in_spec3_y;
+        const real crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_s_3;
         /* (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real crs_h_2_y = m->crs_h_2_y[i];
-        const real crs_h_2_z = m->crs_h_2_z[i];
-        const real crs_mu_1_o_z = crs_J_2_xx*crs_qdd_1_o - crs_g_r1_x*crs_h_2_y -
-            crs_g_r1_y*crs_h_2_z;
+        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
+        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
+        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
+        const real crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o -
+            crs_g_in_axes1_x*crs_h_2_in_spec1_y - crs_g_in_axes1_y*crs_h_2_in_spec1_z;
         /* (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real crs_N_1_o_z = crs_mu_1_o_z + crs_mu_3_o_x*crs_s_3 - crs_c_3*crs_mu_3_o_y;
-        /* (crs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real crs_G_o_t = inv_crs_r_1_t_2*(crs_mu_3_o_z + crs_f_2_o_t*crs_r_1_t);
+        const real crs_N_1_o_in_axes1_z = crs_mu_1_o_in_axes1_z + crs_mu_3_o_in_axes3_x*crs_s_3 -
+            crs_c_3_t*crs_mu_3_o_in_axes3_y;
+        /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
+           inertia and weight */
+        const real crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_d_4_in_axes1_z;
+        const real crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3_t*crs_link2_mass;
+        /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real crs_J_3_in_spec3_xx = m->crs_J_3_in_spec3_xx[i];
+        const real crs_J_3_in_spec3_yy = m->crs_J_3_in_spec3_yy[i];
+        const real crs_d_Gamma_1_in_axes1_x = crs_c_3_t*crs_h_3_in_spec3_x +
+            crs_h_3_in_spec3_y*crs_s_3 + crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
+            crs_s_3*(crs_J_3_in_spec3_xx*crs_s_3 - crs_J_3_in_spec3_xy*crs_c_3_t) -
+            crs_c_3_t*(crs_J_3_in_spec3_xy*crs_s_3 - crs_J_3_in_spec3_yy*crs_c_3_t));
+        /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real crs_d_c_in_axes3_xx = crs_h_3_in_spec3_y*crs_w_3_in_axes3_x -
+            crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
+            crs_w_2_in_axes3_x*(crs_c_3_t*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3);
+        const real crs_d_c_in_axes3_xy = crs_h_3_in_spec3_y*crs_w_3_in_axes3_y -
+            crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
+            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x;
+        const real crs_d_c_in_axes3_xz = crs_d_alpha_3_t*crs_h_3_in_spec3_z -
+            crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x;
+        const real crs_d_c_in_axes3_yz = crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z -
+            crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y;
         /* (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real crs_c_o_x = crs_alpha_1_o_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3)
-            - crs_B_3_o_xy*crs_h_3_y - crs_G_o_t*crs_c_3 - crs_f_2_o_t*crs_s_3;
-        const real crs_c_o_y = crs_alpha_1_o_t*crs_h_3_z + crs_c_3*crs_f_2_o_t +
-            crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) - crs_B_3_o_yx*crs_h_3_x - crs_G_o_t*crs_s_3;
-        const real crs_c_o_z = crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_o_zx*crs_h_3_x -
-            crs_B_3_o_zy*crs_h_3_y - crs_N_1_o_z*inv_crs_v_1_z;
+        const real crs_c_o_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
+            crs_f_2_o_in_axes1_z*crs_r_1_t);
+        const real crs_c_o_in_axes3_x = crs_alpha_1_o_t*crs_h_3_in_spec3_z +
+            crs_h_3_in_spec3_x*(crs_mu_3_o_t_2 + crs_mu_3_o_t_3) -
+            crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_o_t -
+            crs_f_2_o_in_axes1_z*crs_s_3;
+        const real crs_c_o_in_axes3_y = crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
+            crs_c_3_t*crs_f_2_o_in_axes1_z + crs_h_3_in_spec3_y*(crs_mu_3_o_t + crs_mu_3_o_t_3) -
+            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_o_t*crs_s_3;
+        const real crs_c_o_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_o_t + crs_mu_3_o_t_2) -
+            crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
+            crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z;
+        /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real crs_Q_t = crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_y +
+            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y + crs_h_3_in_spec3_x*crs_w_3_in_axes3_y;
+        const real crs_Q_t_2 = R(0.5)*crs_Q_t;
+        const real crs_Q_t_3 = crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_x*crs_w_1_in_axes3_z +
+            crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + crs_d_alpha_3_t*crs_h_3_in_spec3_x;
+        const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
+        const real crs_Q_t_5 = axis_x_crs_axes3_x*crs_d_c_in_axes3_xy +
+            axis_z_crs_axes3_x*crs_d_c_in_axes3_yz - axis_y_crs_axes3_x*crs_Q_t_2;
+        const real crs_Q_t_6 = axis_x_crs_axes3_y*crs_d_c_in_axes3_xy +
+            axis_z_crs_axes3_y*crs_d_c_in_axes3_yz - axis_y_crs_axes3_y*crs_Q_t_2;
+        const real crs_Q_t_7 = axis_x_crs_axes3_z*crs_d_c_in_axes3_xy +
+            axis_z_crs_axes3_z*crs_d_c_in_axes3_yz - axis_y_crs_axes3_z*crs_Q_t_2;
+        const real crs_Q_t_8 = axis_z_crs_axes3_x*crs_Q_t_4 -
+            axis_x_crs_axes3_x*crs_d_c_in_axes3_xz;
+        const real crs_Q_t_9 = axis_z_crs_axes3_y*crs_Q_t_4 -
+            axis_x_crs_axes3_y*crs_d_c_in_axes3_xz;
+        const real crs_Q_t_10 = axis_z_crs_axes3_z*crs_Q_t_4 -
+            axis_x_crs_axes3_z*crs_d_c_in_axes3_xz;
+        const real crs_Q_t_11 = axis_y_crs_axes3_x*crs_Q_t_5 - axis_z_crs_axes3_x*crs_Q_t_8;
+        const real crs_Q_xx = -2*crs_Q_t_11 - crs_d_c_in_axes3_xx;
+        const real crs_Q_xy = axis_z_crs_axes3_x*crs_Q_t_9 + axis_z_crs_axes3_y*crs_Q_t_8 -
+            axis_y_crs_axes3_x*crs_Q_t_6 - axis_y_crs_axes3_y*crs_Q_t_5;
+        const real crs_Q_xz = axis_z_crs_axes3_x*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_8 -
+            axis_y_crs_axes3_x*crs_Q_t_7 - axis_y_crs_axes3_z*crs_Q_t_5;
+        const real crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 - axis_z_crs_axes3_y*crs_Q_t_9;
+        const real crs_Q_yy = -2*crs_Q_t_12 - crs_d_c_in_axes3_xx;
+        const real crs_Q_yz = axis_z_crs_axes3_y*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_9 -
+            axis_y_crs_axes3_y*crs_Q_t_7 - axis_y_crs_axes3_z*crs_Q_t_6;
+        const real crs_Q_t_13 = axis_y_crs_axes3_z*crs_Q_t_7 - axis_z_crs_axes3_z*crs_Q_t_10;
+        const real crs_Q_zz = -2*crs_Q_t_13 - crs_d_c_in_axes3_xx;
         /* (crs-U) velocity and gravity terms of the leg force */
-        const real crs_U_in_base_x = -axis_x_crs_axes3_x*crs_c_o_x -
-            axis_y_crs_axes3_in_base_x*crs_c_o_y - axis_z_crs_axes3_in_base_x*crs_c_o_z;
-        const real crs_U_in_base_y = -axis_x_crs_axes3_y*crs_c_o_x -
-            axis_y_crs_axes3_in_base_y*crs_c_o_y - axis_z_crs_axes3_in_base_y*crs_c_o_z;
-        const real crs_U_in_base_z = -axis_x_crs_axes3_z*crs_c_o_x -
-            axis_y_crs_axes3_in_base_z*crs_c_o_y - axis_z_crs_axes3_in_base_z*crs_c_o_z;
+        const real crs_U_x = -axis_x_crs_axes3_x*crs_c_o_in_axes3_x -
+            axis_y_crs_axes3_x*crs_c_o_in_axes3_y - axis_z_crs_axes3_x*crs_c_o_in_axes3_z;
+        const real crs_U_y = -axis_x_crs_axes3_y*crs_c_o_in_axes3_x -
+            axis_y_crs_axes3_y*crs_c_o_in_axes3_y - axis_z_crs_axes3_y*crs_c_o_in_axes3_z;
+        const real crs_U_z = -axis_x_crs_axes3_z*crs_c_o_in_axes3_x -
+            axis_y_crs_axes3_z*crs_c_o_in_axes3_y - axis_z_crs_axes3_z*crs_c_o_in_axes3_z;
+        /* (M_ta) coupling block of M */
+        const real crs_M_ta_t = -crs_Q_xy*crs_q_z;
+        const real crs_M_ta_t_2 = crs_Q_xz*crs_q_y;
+        const real crs_M_ta_t_3 = crs_M_ta_t + crs_M_ta_t_2;
+        const real crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x;
+        const real crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y;
+        const real crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z;
+        const real crs_M_ta_t_7 = crs_Q_yz*crs_q_x;
+        const real crs_M_ta_t_8 = crs_M_ta_t + crs_M_ta_t_7;
+        const real crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y;
+        const real crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z;
+        const real crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x;
+        const real crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z;
+        const real crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y + crs_M_ta_t_8*crs_q_z;
+        const real crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z;
+        const real crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x;
+        const real crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x;
+        const real crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y;
         /* (Z_a) rotational part of Z */
-        const real crs_Z_a_t = crs_U_in_base_z*crs_q_in_base_y - crs_U_in_base_y*crs_q_in_base_z;
-        const real crs_Z_a_t_2 = crs_U_in_base_x*crs_q_in_base_z -
-            crs_U_in_base_z*crs_q_in_base_x;
-        const real crs_Z_a_t_3 = crs_U_in_base_y*crs_q_in_base_x -
-            crs_U_in_base_x*crs_q_in_base_y;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z;
-        const real crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z;
-        const real crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z;
+        const real crs_Z_a_t = crs_U_z*crs_q_y - crs_U_y*crs_q_z;
+        const real crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x;
+        const real crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y;
         /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        const real crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4;
-        const real crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5;
-        const real crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x +
-            axis_y_crs_axes3_in_base_x*crs__r1_y;
-        const real crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x +
-            axis_y_crs_axes3_in_base_y*crs__r1_y;
-        const real crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x +
-            axis_y_crs_axes3_in_base_z*crs__r1_y;
+        const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
+        const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
+        const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
         /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        const real crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z -
-            crs_q_in_base_z*crs_w_2_in_base_y;
-        const real crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x -
-            crs_q_in_base_x*crs_w_2_in_base_z;
-        const real crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y -
-            crs_q_in_base_y*crs_w_2_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + crs_Q_t_12 : crs_Q_t_12;  /* total_crs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + crs_Q_t_13 : crs_Q_t_13;  /* total_crs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + crs_Q_t_14 : crs_Q_t_14;  /* total_crs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + crs_Q_t_16 : crs_Q_t_16;  /* total_crs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + crs_Q_t_17 : crs_Q_t_17;  /* total_crs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + crs_Q_t_19 : crs_Q_t_19;  /* total_crs_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + crs_M_ta_t_3 : crs_M_ta_t_3;  /* total_crs_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + crs_M_ta_t_4 : crs_M_ta_t_4;  /* total_crs_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + crs_M_ta_t_5 : crs_M_ta_t_5;  /* total_crs_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + crs_M_ta_t_6 : crs_M_ta_t_6;  /* total_crs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + crs_M_ta_t_8 : crs_M_ta_t_8;  /* total_crs_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + crs_M_ta_t_9 : crs_M_ta_t_9;  /* total_crs_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + crs_M_ta_t_10 : crs_M_ta_t_10;  /* total_crs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + crs_M_ta_t_11 : crs_M_ta_t_11;  /* total_crs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + crs_M_ta_t_12 : crs_M_ta_t_12;  /* total_crs_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + crs_M_aa_t : crs_M_aa_t;  /* total_crs_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + crs_M_aa_t_2 : crs_M_aa_t_2;  /* total_crs_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + crs_M_aa_t_3 : crs_M_aa_t_3;  /* total_crs_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + crs_M_aa_t_4 : crs_M_aa_t_4;  /* total_crs_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + crs_M_aa_t_5 : crs_M_aa_t_5;  /* total_crs_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + crs_M_aa_t_6 : crs_M_aa_t_6;  /* total_crs_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + crs_U_in_base_x : crs_U_in_base_x;  /* total_crs_x */
-        terms[22*count + k] = add ? terms[22*count + k] + crs_U_in_base_y : crs_U_in_base_y;  /* total_crs_y */
-        terms[23*count + k] = add ? terms[23*count + k] + crs_U_in_base_z : crs_U_in_base_z;  /* total_crs_z */
-        terms[24*count + k] = add ? terms[24*count + k] + crs_Z_a_t : crs_Z_a_t;  /* total_crs_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + crs_Z_a_t_2 : crs_Z_a_t_2;  /* total_crs_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + crs_Z_a_t_3 : crs_Z_a_t_3;  /* total_crs_z_2 */
-        o[0*count + k] = crs_w_1_t_3;
-        o[1*count + k] = crs_w_1_t_4;
-        o[2*count + k] = crs_w_1_t_5;
+        const real crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y;
+        const real crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z;
+        const real crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + crs_Q_xx : crs_Q_xx;  /* M_tt_crs_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + crs_Q_xy : crs_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + crs_Q_xz : crs_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + crs_Q_yy : crs_Q_yy;  /* M_tt_crs_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + crs_Q_yz : crs_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + crs_Q_zz : crs_Q_zz;  /* M_tt_crs_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + crs_M_ta_t_3 : crs_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + crs_M_ta_t_4 : crs_M_ta_t_4;  /* M_ta_crs_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + crs_M_ta_t_5 : crs_M_ta_t_5;  /* M_ta_crs_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + crs_M_ta_t_6 : crs_M_ta_t_6;  /* M_ta_crs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + -crs_M_ta_t_8 : -crs_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + crs_M_ta_t_9 : crs_M_ta_t_9;  /* M_ta_crs_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + crs_M_ta_t_10 : crs_M_ta_t_10;  /* M_ta_crs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + crs_M_ta_t_11 : crs_M_ta_t_11;  /* M_ta_crs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + crs_M_ta_t_12 : crs_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + crs_M_aa_t : crs_M_aa_t;  /* M_aa_crs_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + crs_M_aa_t_2 : crs_M_aa_t_2;  /* M_aa_crs_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + crs_M_aa_t_3 : crs_M_aa_t_3;  /* M_aa_crs_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + crs_M_aa_t_4 : crs_M_aa_t_4;  /* M_aa_crs_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + crs_M_aa_t_5 : crs_M_aa_t_5;  /* M_aa_crs_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + crs_M_aa_t_6 : crs_M_aa_t_6;  /* M_aa_crs_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + crs_U_x : crs_U_x;  /* Z_t_crs_x */
+        terms[22*count + k] = add ? terms[22*count + k] + crs_U_y : crs_U_y;  /* Z_t_crs_y */
+        terms[23*count + k] = add ? terms[23*count + k] + crs_U_z : crs_U_z;  /* Z_t_crs_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + crs_Z_a_t : crs_Z_a_t;  /* Z_a_crs_x */
+        terms[25*count + k] = add ? terms[25*count + k] + crs_Z_a_t_2 : crs_Z_a_t_2;  /* Z_a_crs_y */
+        terms[26*count + k] = add ? terms[26*count + k] + crs_Z_a_t_3 : crs_Z_a_t_3;  /* Z_a_crs_z */
+        /* (crs-w_1) reciprocal vector 1 */
+        o[0*count + k] = crs_w_1_x;
+        o[1*count + k] = crs_w_1_y;
+        o[2*count + k] = crs_w_1_z;
+        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = crs_H_a_1_x;
         o[4*count + k] = crs_H_a_1_y;
         o[5*count + k] = crs_H_a_1_z;
-        o[6*count + k] = crs_w_2_in_base_x;
-        o[7*count + k] = crs_w_2_in_base_y;
-        o[8*count + k] = crs_w_2_in_base_z;
+        /* (crs-w_2) reciprocal vector 2 */
+        o[6*count + k] = crs_w_2_x;
+        o[7*count + k] = crs_w_2_y;
+        o[8*count + k] = crs_w_2_z;
+        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = crs_H_a_2_x;
         o[10*count + k] = crs_H_a_2_y;
         o[11*count + k] = crs_H_a_2_z;
-        o[14*count + k] = ((crs_w_1_t_3 + (crs_w_1_t_4 + crs_w_1_t_5)) + (crs_H_a_1_x +
-            (crs_H_a_1_y + crs_H_a_1_z))) + ((crs_w_2_in_base_x + (crs_w_2_in_base_y +
-            crs_w_2_in_base_z)) + (crs_H_a_2_x + (crs_H_a_2_y + crs_H_a_2_z)));
+        o[14*count + k] = ((crs_w_1_x + (crs_w_1_y + crs_w_1_z)) + (crs_H_a_1_x + (crs_H_a_1_y +
+            crs_H_a_1_z))) + ((crs_w_2_x + (crs_w_2_y + crs_w_2_z)) + (crs_H_a_2_x + (crs_H_a_2_y
+            + crs_H_a_2_z)));
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[13*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[12*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -1898,101 +1942,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_crs_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_crs_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_crs_xx;
-        const real total_crs_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_crs_yy;
-        const real total_crs_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_crs_zz;
+        const real M_tt_xx = M_tt_crs_xx + m_star;
+        const real M_tt_crs_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_crs_yy + m_star;
+        const real M_tt_crs_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_crs_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_crs_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_crs_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_crs_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_crs_xz_2 - h_star_in_base_y;
-        const real total_crs_yx = sums[9*w + k];
-        const real M_ta_yx = total_crs_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_crs_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_crs_yz_2;
-        const real total_crs_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_crs_zx;
-        const real total_crs_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_crs_zy;
+        const real M_ta_crs_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_crs_xy + h_star_z;
+        const real M_ta_crs_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_crs_xz - h_star_y;
+        const real M_ta_crs_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_crs_yx - h_star_z;
+        const real M_ta_crs_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_crs_yz + h_star_x;
+        const real M_ta_crs_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_crs_zx + h_star_y;
+        const real M_ta_crs_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_crs_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_crs_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_crs_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_crs_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_crs_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_crs_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_crs_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_crs_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_crs_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_crs_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_crs_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_crs_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_crs_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_crs_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_crs_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_crs_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_crs_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_crs_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_crs_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_crs_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_crs_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_crs_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_crs_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_crs_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_crs_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_crs_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_crs_x;
+        const real Z_t_crs_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_crs_x;
         const real Z_p_y = s[28*w + k];
-        const real total_crs_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_crs_y;
+        const real Z_t_crs_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_crs_y;
         const real Z_p_z = s[29*w + k];
-        const real total_crs_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_crs_z;
+        const real Z_t_crs_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_crs_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_crs_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_crs_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_crs_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_crs_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_crs_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_crs_z_2;
+        const real Z_a_crs_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_crs_x + Z_q_x;
+        const real Z_a_crs_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_crs_y + Z_q_y;
+        const real Z_a_crs_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_crs_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_crs_xy = sums[1*w + k];
-        M[1*w + k] = -total_crs_xy;
-        M[6*w + k] = -total_crs_xy;
-        const real total_crs_xz = sums[2*w + k];
-        M[2*w + k] = -total_crs_xz;
-        M[12*w + k] = -total_crs_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_crs_yz = sums[4*w + k];
-        M[8*w + k] = -total_crs_yz;
-        M[13*w + k] = -total_crs_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_crs_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_crs_xx_2;
-        M[18*w + k] = total_crs_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_crs_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_crs_yy_2;
-        M[25*w + k] = -total_crs_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_crs_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_crs_zz_2;
-        M[32*w + k] = -total_crs_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2002,17 +2049,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_crs_xy + total_crs_xz)) + (M_tt_yy + (total_crs_yz +
-            M_tt_zz))) + ((total_crs_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_crs_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_crs_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -2083,37 +2131,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2126,15 +2180,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2152,27 +2206,27 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -2190,190 +2244,192 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
         /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
         /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 -
-            crs_base_frame_xy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 -
-            crs_base_frame_yy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 -
-            crs_base_frame_zy*crs_c_1;
-        const real crs_w_1_t = crs_s_1*crs_s_3;
-        const real crs_w_1_t_2 = crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_in_base_x = crs_base_frame_xy*crs_w_1_t +
-            crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_y = crs_base_frame_yy*crs_w_1_t +
-            crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_z = crs_base_frame_zy*crs_w_1_t +
-            crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x;
-        const real inv_crs_v_1_z = 1/crs_v_1_z;
-        /* (crs-w_3) reciprocal vector 3 */
-        const real inv_crs_r_1_t_2 = 1/crs_r_1_t_2;
-        const real crs_w_3_t = crs_c_3*inv_crs_r_1_t_2;
-        const real crs_w_3_t_2 = crs_s_3*inv_crs_r_1_t_2;
-        /* (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real crs_d_alpha_3_t = crs_s_3*inv_crs_v_1_z;
-        const real crs_d_alpha_3_t_2 = crs_c_3*inv_crs_v_1_z;
+        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
         /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2;
-        const real crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t;
+        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
+        const real crs_w_2_t = crs_r_1_t*inv_crs_d_4_in_axes1_z;
+        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t;
+        /* (crs-w_3) reciprocal vector 3 */
+        const real crs_w_3_in_axes3_x = crs_c_3_t*inv_crs_d_4_in_axes1_z;
+        const real crs_w_3_in_axes3_y = crs_s_3*inv_crs_d_4_in_axes1_z;
+        /* (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real crs_d_alpha_3_in_axes3_xz = crs_s_3*crs_w_1_in_axes3_z;
+        const real crs_d_alpha_3_t = crs_c_3_t*crs_w_1_in_axes3_z;
         /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real crs_J_3_xz = m->crs_J_3_xz[i];
-        const real crs_J_3_yz = m->crs_J_3_yz[i];
-        const real crs_d_Gamma_3_t = inv_crs_v_1_z*(crs_J_3_xz*crs_s_3 - crs_J_3_yz*crs_c_3);
-        const real crs_J_3_zz = m->crs_J_3_zz[i];
-        const real crs_d_Gamma_3_t_2 = crs_J_3_zz*inv_crs_r_1_t_2;
-        const real crs_h_3_y = m->crs_h_3_y[i];
-        const real crs_d_Gamma_3_x = crs_c_3*crs_d_Gamma_3_t_2 - crs_h_3_y;
-        const real crs_h_3_x = m->crs_h_3_x[i];
-        const real crs_d_Gamma_3_y = crs_h_3_x + crs_d_Gamma_3_t_2*crs_s_3;
+        const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
+        const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
+        const real crs_d_Gamma_3_in_axes3_z = crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*crs_s_3 -
+            crs_J_3_in_spec3_yz*crs_c_3_t);
+        const real crs_J_3_in_spec3_zz = m->crs_J_3_in_spec3_zz[i];
+        const real crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z;
+        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+        const real crs_d_Gamma_3_in_axes3_x = crs_c_3_t*crs_d_Gamma_3_t - crs_h_3_in_spec3_y;
+        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+        const real crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_s_3;
         /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
            inertia and weight */
         const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_r_1_t_2;
-        const real crs__r1_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3*crs_link2_mass;
+        const real crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_d_4_in_axes1_z;
+        const real crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3_t*crs_link2_mass;
         /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real crs_J_2_xx = m->crs_J_2_xx[i];
-        const real crs_J_3_xx = m->crs_J_3_xx[i];
-        const real crs_J_3_xy = m->crs_J_3_xy[i];
-        const real crs_J_3_yy = m->crs_J_3_yy[i];
-        const real crs_d_Gamma_1_x = crs_c_3*crs_h_3_x + crs_h_3_y*crs_s_3 +
-            inv_crs_v_1_z*(crs_J_2_xx + crs_s_3*(crs_J_3_xx*crs_s_3 - crs_J_3_xy*crs_c_3) -
-            crs_c_3*(crs_J_3_xy*crs_s_3 - crs_J_3_yy*crs_c_3));
+        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
+        const real crs_J_3_in_spec3_xx = m->crs_J_3_in_spec3_xx[i];
+        const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
+        const real crs_J_3_in_spec3_yy = m->crs_J_3_in_spec3_yy[i];
+        const real crs_d_Gamma_1_in_axes1_x = crs_c_3_t*crs_h_3_in_spec3_x +
+            crs_h_3_in_spec3_y*crs_s_3 + crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
+            crs_s_3*(crs_J_3_in_spec3_xx*crs_s_3 - crs_J_3_in_spec3_xy*crs_c_3_t) -
+            crs_c_3_t*(crs_J_3_in_spec3_xy*crs_s_3 - crs_J_3_in_spec3_yy*crs_c_3_t));
         /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real crs_d_c_xx = crs_h_3_y*crs_w_3_t - crs__r1_x*(crs_c_3*crs_d_Gamma_2_t +
-            crs_link2_mass*crs_s_3) - crs_d_Gamma_3_x*crs_w_3_t;
-        const real crs_d_c_xy = crs_h_3_y*crs_w_3_t_2 - crs__r1_x*crs__r1_y -
-            crs_d_Gamma_3_y*crs_w_3_t;
-        const real crs_h_3_z = m->crs_h_3_z[i];
-        const real crs_d_c_xz = crs_d_alpha_3_t_2*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t;
-        const real crs_d_c_yz = crs_d_alpha_3_t*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t_2;
+        const real crs_d_c_in_axes3_xx = crs_h_3_in_spec3_y*crs_w_3_in_axes3_x -
+            crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
+            crs_w_2_in_axes3_x*(crs_c_3_t*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3);
+        const real crs_d_c_in_axes3_xy = crs_h_3_in_spec3_y*crs_w_3_in_axes3_y -
+            crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
+            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x;
+        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
+        const real crs_d_c_in_axes3_xz = crs_d_alpha_3_t*crs_h_3_in_spec3_z -
+            crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x;
+        const real crs_d_c_in_axes3_yz = crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z -
+            crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y;
         /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real crs_Q_t = crs_d_c_xx + crs__r1_y*(crs_s_3*crs_w_2_t - crs_c_3) +
-            crs_d_Gamma_3_y*crs_w_3_t_2 + crs_h_3_x*crs_w_3_t_2;
-        const real crs_Q_t_2 = R(0.5)*crs_Q_t;
-        const real crs_Q_t_3 = crs_d_c_xx + crs_d_Gamma_1_x*inv_crs_v_1_z +
-            crs_d_alpha_3_t*crs_h_3_y + crs_d_alpha_3_t_2*crs_h_3_x;
+        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
+        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
+        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
+        const real crs_Q_t = crs_s_1*crs_s_3;
+        const real crs_Q_t_2 = -crs_c_1*crs_s_3;
+        const real axis_y_crs_axes3_x = crs_Q_t*crs_base_frame_xy + crs_Q_t_2*crs_base_frame_xz -
+            crs_base_frame_xx*crs_c_3_t;
+        const real axis_y_crs_axes3_y = crs_Q_t*crs_base_frame_yy + crs_Q_t_2*crs_base_frame_yz -
+            crs_base_frame_yx*crs_c_3_t;
+        const real axis_y_crs_axes3_z = crs_Q_t*crs_base_frame_zy + crs_Q_t_2*crs_base_frame_zz -
+            crs_base_frame_zx*crs_c_3_t;
+        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
+        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
+        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
+        const real crs_Q_t_3 = crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*(crs_s_3*crs_w_2_t -
+            crs_c_3_t) + crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y +
+            crs_h_3_in_spec3_x*crs_w_3_in_axes3_y;
         const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
-        const real crs_Q_t_5 = axis_x_crs_axes3_x*crs_d_c_xy +
-            axis_z_crs_axes3_in_base_x*crs_d_c_yz - axis_y_crs_axes3_in_base_x*crs_Q_t_2;
-        const real crs_Q_t_6 = axis_x_crs_axes3_y*crs_d_c_xy +
-            axis_z_crs_axes3_in_base_y*crs_d_c_yz - axis_y_crs_axes3_in_base_y*crs_Q_t_2;
-        const real crs_Q_t_7 = axis_x_crs_axes3_z*crs_d_c_xy +
-            axis_z_crs_axes3_in_base_z*crs_d_c_yz - axis_y_crs_axes3_in_base_z*crs_Q_t_2;
-        const real crs_Q_t_8 = axis_z_crs_axes3_in_base_x*crs_Q_t_4 -
-            axis_x_crs_axes3_x*crs_d_c_xz;
-        const real crs_Q_t_9 = axis_z_crs_axes3_in_base_y*crs_Q_t_4 -
-            axis_x_crs_axes3_y*crs_d_c_xz;
-        const real crs_Q_t_10 = axis_z_crs_axes3_in_base_z*crs_Q_t_4 -
-            axis_x_crs_axes3_z*crs_d_c_xz;
-        const real crs_Q_t_11 = axis_y_crs_axes3_in_base_x*crs_Q_t_5 -
-            axis_z_crs_axes3_in_base_x*crs_Q_t_8;
-        const real crs_Q_t_12 = 2*crs_Q_t_11 + crs_d_c_xx;
-        const real crs_Q_t_13 = axis_y_crs_axes3_in_base_x*crs_Q_t_6 +
-            axis_y_crs_axes3_in_base_y*crs_Q_t_5 - axis_z_crs_axes3_in_base_x*crs_Q_t_9 -
-            axis_z_crs_axes3_in_base_y*crs_Q_t_8;
-        const real crs_Q_t_14 = axis_y_crs_axes3_in_base_x*crs_Q_t_7 +
-            axis_y_crs_axes3_in_base_z*crs_Q_t_5 - axis_z_crs_axes3_in_base_x*crs_Q_t_10 -
-            axis_z_crs_axes3_in_base_z*crs_Q_t_8;
-        const real crs_Q_t_15 = axis_y_crs_axes3_in_base_y*crs_Q_t_6 -
-            axis_z_crs_axes3_in_base_y*crs_Q_t_9;
-        const real crs_Q_t_16 = 2*crs_Q_t_15 + crs_d_c_xx;
-        const real crs_Q_t_17 = axis_y_crs_axes3_in_base_y*crs_Q_t_7 +
-            axis_y_crs_axes3_in_base_z*crs_Q_t_6 - axis_z_crs_axes3_in_base_y*crs_Q_t_10 -
-            axis_z_crs_axes3_in_base_z*crs_Q_t_9;
-        const real crs_Q_t_18 = axis_y_crs_axes3_in_base_z*crs_Q_t_7 -
-            axis_z_crs_axes3_in_base_z*crs_Q_t_10;
-        const real crs_Q_t_19 = 2*crs_Q_t_18 + crs_d_c_xx;
+        const real crs_Q_t_5 = crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_x*crs_w_1_in_axes3_z +
+            crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + crs_d_alpha_3_t*crs_h_3_in_spec3_x;
+        const real crs_Q_t_6 = R(0.5)*crs_Q_t_5;
+        const real crs_Q_t_7 = axis_x_crs_axes3_x*crs_d_c_in_axes3_xy +
+            axis_z_crs_axes3_x*crs_d_c_in_axes3_yz - axis_y_crs_axes3_x*crs_Q_t_4;
+        const real crs_Q_t_8 = axis_x_crs_axes3_y*crs_d_c_in_axes3_xy +
+            axis_z_crs_axes3_y*crs_d_c_in_axes3_yz - axis_y_crs_axes3_y*crs_Q_t_4;
+        const real crs_Q_t_9 = axis_x_crs_axes3_z*crs_d_c_in_axes3_xy +
+            axis_z_crs_axes3_z*crs_d_c_in_axes3_yz - axis_y_crs_axes3_z*crs_Q_t_4;
+        const real crs_Q_t_10 = axis_z_crs_axes3_x*crs_Q_t_6 -
+            axis_x_crs_axes3_x*crs_d_c_in_axes3_xz;
+        const real crs_Q_t_11 = axis_z_crs_axes3_y*crs_Q_t_6 -
+            axis_x_crs_axes3_y*crs_d_c_in_axes3_xz;
+        const real crs_Q_t_12 = axis_z_crs_axes3_z*crs_Q_t_6 -
+            axis_x_crs_axes3_z*crs_d_c_in_axes3_xz;
+        const real crs_Q_t_13 = axis_y_crs_axes3_x*crs_Q_t_7 - axis_z_crs_axes3_x*crs_Q_t_10;
+        const real crs_Q_xx = -2*crs_Q_t_13 - crs_d_c_in_axes3_xx;
+        const real crs_Q_xy = axis_z_crs_axes3_x*crs_Q_t_11 + axis_z_crs_axes3_y*crs_Q_t_10 -
+            axis_y_crs_axes3_x*crs_Q_t_8 - axis_y_crs_axes3_y*crs_Q_t_7;
+        const real crs_Q_xz = axis_z_crs_axes3_x*crs_Q_t_12 + axis_z_crs_axes3_z*crs_Q_t_10 -
+            axis_y_crs_axes3_x*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_7;
+        const real crs_Q_t_14 = axis_y_crs_axes3_y*crs_Q_t_8 - axis_z_crs_axes3_y*crs_Q_t_11;
+        const real crs_Q_yy = -2*crs_Q_t_14 - crs_d_c_in_axes3_xx;
+        const real crs_Q_yz = axis_z_crs_axes3_y*crs_Q_t_12 + axis_z_crs_axes3_z*crs_Q_t_11 -
+            axis_y_crs_axes3_y*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_8;
+        const real crs_Q_t_15 = axis_y_crs_axes3_z*crs_Q_t_9 - axis_z_crs_axes3_z*crs_Q_t_12;
+        const real crs_Q_zz = -2*crs_Q_t_15 - crs_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real crs_M_ta_t = crs_Q_t_13*crs_q_in_base_z;
-        const real crs_M_ta_t_2 = crs_Q_t_14*crs_q_in_base_y;
-        const real crs_M_ta_t_3 = crs_M_ta_t - crs_M_ta_t_2;
-        const real crs_M_ta_t_4 = crs_Q_t_12*crs_q_in_base_z - crs_Q_t_14*crs_q_in_base_x;
-        const real crs_M_ta_t_5 = crs_Q_t_12*crs_q_in_base_y - crs_Q_t_13*crs_q_in_base_x;
-        const real crs_M_ta_t_6 = crs_Q_t_16*crs_q_in_base_z - crs_Q_t_17*crs_q_in_base_y;
-        const real crs_M_ta_t_7 = crs_Q_t_17*crs_q_in_base_x;
-        const real crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7;
-        const real crs_M_ta_t_9 = crs_Q_t_13*crs_q_in_base_y - crs_Q_t_16*crs_q_in_base_x;
-        const real crs_M_ta_t_10 = crs_Q_t_17*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_y;
-        const real crs_M_ta_t_11 = crs_Q_t_14*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_x;
+        const real crs_M_ta_t = -crs_Q_xy*crs_q_z;
+        const real crs_M_ta_t_2 = crs_Q_xz*crs_q_y;
+        const real crs_M_ta_t_3 = crs_M_ta_t + crs_M_ta_t_2;
+        const real crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x;
+        const real crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y;
+        const real crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z;
+        const real crs_M_ta_t_7 = crs_Q_yz*crs_q_x;
+        const real crs_M_ta_t_8 = crs_M_ta_t + crs_M_ta_t_7;
+        const real crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y;
+        const real crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z;
+        const real crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x;
         const real crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real crs_M_aa_t = crs_M_ta_t_6*crs_q_in_base_z - crs_M_ta_t_10*crs_q_in_base_y;
-        const real crs_M_aa_t_2 = crs_M_ta_t_8*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_y;
-        const real crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_in_base_y + crs_M_ta_t_9*crs_q_in_base_z;
-        const real crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_x;
-        const real crs_M_aa_t_5 = crs_M_ta_t_12*crs_q_in_base_x + crs_M_ta_t_5*crs_q_in_base_z;
-        const real crs_M_aa_t_6 = crs_M_ta_t_5*crs_q_in_base_y - crs_M_ta_t_9*crs_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + crs_Q_t_12 : crs_Q_t_12;  /* total_crs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + crs_Q_t_13 : crs_Q_t_13;  /* total_crs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + crs_Q_t_14 : crs_Q_t_14;  /* total_crs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + crs_Q_t_16 : crs_Q_t_16;  /* total_crs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + crs_Q_t_17 : crs_Q_t_17;  /* total_crs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + crs_Q_t_19 : crs_Q_t_19;  /* total_crs_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + crs_M_ta_t_3 : crs_M_ta_t_3;  /* total_crs_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + crs_M_ta_t_4 : crs_M_ta_t_4;  /* total_crs_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + crs_M_ta_t_5 : crs_M_ta_t_5;  /* total_crs_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + crs_M_ta_t_6 : crs_M_ta_t_6;  /* total_crs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + crs_M_ta_t_8 : crs_M_ta_t_8;  /* total_crs_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + crs_M_ta_t_9 : crs_M_ta_t_9;  /* total_crs_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + crs_M_ta_t_10 : crs_M_ta_t_10;  /* total_crs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + crs_M_ta_t_11 : crs_M_ta_t_11;  /* total_crs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + crs_M_ta_t_12 : crs_M_ta_t_12;  /* total_crs_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + crs_M_aa_t : crs_M_aa_t;  /* total_crs_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + crs_M_aa_t_2 : crs_M_aa_t_2;  /* total_crs_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + crs_M_aa_t_3 : crs_M_aa_t_3;  /* total_crs_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + crs_M_aa_t_4 : crs_M_aa_t_4;  /* total_crs_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + crs_M_aa_t_5 : crs_M_aa_t_5;  /* total_crs_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + crs_M_aa_t_6 : crs_M_aa_t_6;  /* total_crs_zz_3 */
+        const real crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z;
+        const real crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y + crs_M_ta_t_8*crs_q_z;
+        const real crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z;
+        const real crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x;
+        const real crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x;
+        const real crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + crs_Q_xx : crs_Q_xx;  /* M_tt_crs_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + crs_Q_xy : crs_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + crs_Q_xz : crs_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + crs_Q_yy : crs_Q_yy;  /* M_tt_crs_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + crs_Q_yz : crs_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + crs_Q_zz : crs_Q_zz;  /* M_tt_crs_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + crs_M_ta_t_3 : crs_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + crs_M_ta_t_4 : crs_M_ta_t_4;  /* M_ta_crs_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + crs_M_ta_t_5 : crs_M_ta_t_5;  /* M_ta_crs_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + crs_M_ta_t_6 : crs_M_ta_t_6;  /* M_ta_crs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + -crs_M_ta_t_8 : -crs_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + crs_M_ta_t_9 : crs_M_ta_t_9;  /* M_ta_crs_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + crs_M_ta_t_10 : crs_M_ta_t_10;  /* M_ta_crs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + crs_M_ta_t_11 : crs_M_ta_t_11;  /* M_ta_crs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + crs_M_ta_t_12 : crs_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + crs_M_aa_t : crs_M_aa_t;  /* M_aa_crs_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + crs_M_aa_t_2 : crs_M_aa_t_2;  /* M_aa_crs_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + crs_M_aa_t_3 : crs_M_aa_t_3;  /* M_aa_crs_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + crs_M_aa_t_4 : crs_M_aa_t_4;  /* M_aa_crs_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + crs_M_aa_t_5 : crs_M_aa_t_5;  /* M_aa_crs_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + crs_M_aa_t_6 : crs_M_aa_t_6;  /* M_aa_crs_zz */
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[1*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[0*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -2391,81 +2447,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_crs_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_crs_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_crs_xx;
-        const real total_crs_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_crs_yy;
-        const real total_crs_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_crs_zz;
+        const real M_tt_xx = M_tt_crs_xx + m_star;
+        const real M_tt_crs_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_crs_yy + m_star;
+        const real M_tt_crs_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_crs_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_crs_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_crs_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_crs_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_crs_xz_2 - h_star_in_base_y;
-        const real total_crs_yx = sums[9*w + k];
-        const real M_ta_yx = total_crs_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_crs_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_crs_yz_2;
-        const real total_crs_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_crs_zx;
-        const real total_crs_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_crs_zy;
+        const real M_ta_crs_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_crs_xy + h_star_z;
+        const real M_ta_crs_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_crs_xz - h_star_y;
+        const real M_ta_crs_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_crs_yx - h_star_z;
+        const real M_ta_crs_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_crs_yz + h_star_x;
+        const real M_ta_crs_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_crs_zx + h_star_y;
+        const real M_ta_crs_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_crs_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_crs_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_crs_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_crs_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_crs_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_crs_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_crs_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_crs_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_crs_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_crs_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_crs_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_crs_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_crs_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_crs_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_crs_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_crs_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_crs_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_crs_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_crs_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_crs_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_crs_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_crs_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_crs_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_crs_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_crs_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_crs_xy = sums[1*w + k];
-        M[1*w + k] = -total_crs_xy;
-        M[6*w + k] = -total_crs_xy;
-        const real total_crs_xz = sums[2*w + k];
-        M[2*w + k] = -total_crs_xz;
-        M[12*w + k] = -total_crs_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_crs_yz = sums[4*w + k];
-        M[8*w + k] = -total_crs_yz;
-        M[13*w + k] = -total_crs_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_crs_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_crs_xx_2;
-        M[18*w + k] = total_crs_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_crs_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_crs_yy_2;
-        M[25*w + k] = -total_crs_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_crs_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_crs_zz_2;
-        M[32*w + k] = -total_crs_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2475,10 +2534,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_crs_xy) + (total_crs_xz + (M_tt_yy + total_crs_yz))) +
-            ((M_tt_zz + total_crs_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_crs_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_crs_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2561,16 +2620,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2581,30 +2643,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2626,9 +2697,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2646,27 +2717,27 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -2684,221 +2755,235 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 -
-            crs_base_frame_xy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 -
-            crs_base_frame_yy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 -
-            crs_base_frame_zy*crs_c_1;
-        const real crs_w_1_t = crs_s_1*crs_s_3;
-        const real crs_w_1_t_2 = crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_in_base_x = crs_base_frame_xy*crs_w_1_t +
-            crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_y = crs_base_frame_yy*crs_w_1_t +
-            crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_z = crs_base_frame_zy*crs_w_1_t +
-            crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x;
-        const real inv_crs_v_1_z = 1/crs_v_1_z;
-        /* (crs-w_3) reciprocal vector 3 */
-        const real inv_crs_r_1_t_2 = 1/crs_r_1_t_2;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z;
+        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
         const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y;
+        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
+        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
         const real t_dot_x = s[12*w + j];
         const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        const real crs_S_dot_r0_x = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy
-            + crs_S_dot_z*crs_base_frame_zy;
-        const real crs_S_dot_r0_y = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz
-            + crs_S_dot_z*crs_base_frame_zz;
-        /* (crs-qd_3) rate of joint 3 */
-        const real crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1);
-        const real crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1);
-        const real crs_qd_3_t = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t;
+        /* (crs-r_1) from joint 1 to the connection point, along the links */
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
+        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
+        /* (crs-w_1) reciprocal vector 1 */
+        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+        /* (crs-qd_1) rate of joint 1 */
+        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy;
+        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz;
+        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
+        /* (crs-qd_2) rate of joint 2 */
+        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
+        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
+            crs_qd_1_t*crs_s_1);
+        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
         /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_t = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t_2 = crs_c_3*crs_qd_1;
-        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3;
-        const real crs_zeta_3_y = crs_omega_1_t*crs_qd_3;
+        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
+        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
+        /* (crs-W_3) centripetal tensor of link 3 */
+        const real crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t;
+        const real crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t;
         /* (crs-u_1) centripetal acceleration of the connection point */
+        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
+        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
+        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
+        const real crs_u_1_t = crs_s_1*crs_s_3;
+        const real crs_u_1_t_2 = -crs_c_1*crs_s_3;
+        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_u_1_t +
+            crs_base_frame_xz*crs_u_1_t_2 - crs_base_frame_xx*crs_c_3_t;
+        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_u_1_t +
+            crs_base_frame_yz*crs_u_1_t_2 - crs_base_frame_yx*crs_c_3_t;
+        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_u_1_t +
+            crs_base_frame_zz*crs_u_1_t_2 - crs_base_frame_zx*crs_c_3_t;
+        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
+        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
+        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
         const real crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
         const real crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
         const real crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
-        /* (crs-W_3) centripetal tensor of link 3 */
-        const real crs_W_3_t = crs_omega_1_t*crs_omega_1_t;
-        const real crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2;
-        const real crs_W_3_t_3 = crs_qd_3*crs_qd_3;
-        const real crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2;
+        const real crs_u_1_in_axes3_x = axis_x_crs_axes3_x*crs_u_1_x +
+            axis_x_crs_axes3_y*crs_u_1_y + axis_x_crs_axes3_z*crs_u_1_z;
+        const real crs_u_1_in_axes3_y = axis_y_crs_axes3_x*crs_u_1_x +
+            axis_y_crs_axes3_y*crs_u_1_y + axis_y_crs_axes3_z*crs_u_1_z;
+        const real crs_u_1_in_axes3_z = axis_z_crs_axes3_x*crs_u_1_x +
+            axis_z_crs_axes3_y*crs_u_1_y + axis_z_crs_axes3_z*crs_u_1_z;
+        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t;
         /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3;
-        const real crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x;
-        const real crs_bias_x = crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 -
-            crs_bias_t_3*crs_omega_1_t_2;
-        const real crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_z = -crs_bias_t_2*crs_omega_1_t -
-            crs_platform_joint_offset_x*crs_zeta_3_y - 2*crs_qd_3_t*(crs_c_3*crs_omega_1_t -
-            crs_omega_1_t_2*crs_s_3);
-        /* (crs-u_1) centripetal acceleration of the connection point */
-        const real crs_u_1_tip_x = axis_x_crs_axes3_x*crs_u_1_x + axis_x_crs_axes3_y*crs_u_1_y +
-            axis_x_crs_axes3_z*crs_u_1_z;
-        const real crs_u_1_tip_y = axis_y_crs_axes3_in_base_x*crs_u_1_x +
-            axis_y_crs_axes3_in_base_y*crs_u_1_y + axis_y_crs_axes3_in_base_z*crs_u_1_z;
-        const real crs_u_1_tip_z = axis_z_crs_axes3_in_base_x*crs_u_1_x +
-            axis_z_crs_axes3_in_base_y*crs_u_1_y + axis_z_crs_axes3_in_base_z*crs_u_1_z;
+        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
+            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
+        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
+        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
+        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
+            crs_bias_t_3*crs_omega_1_t;
+        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
+            crs_bias_t_3*crs_omega_1_in_axes3_x;
+        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
+            crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
+            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3);
         /* (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real crs_rel_o_x = crs_u_1_tip_x - crs_bias_x;
-        const real crs_rel_o_y = crs_u_1_tip_y - crs_bias_y;
-        const real crs_rel_o_z = crs_u_1_tip_z - crs_bias_z;
+        const real crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x;
+        const real crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - crs_bias_in_axes3_y;
+        const real crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - crs_bias_in_axes3_z;
+        /* (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z;
         /* (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real crs_qdd_1_o = crs_rel_o_z*inv_crs_v_1_z;
-        const real crs_qdd_3_o = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_o_x - crs_rel_o_y*crs_s_3);
+        const real crs_qdd_3_o = -inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_o_in_axes3_x -
+            crs_rel_o_in_axes3_y*crs_s_3);
         /* (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real crs_alpha_1_o_t = crs_qdd_1_o*crs_s_3;
-        const real crs_alpha_1_o_t_2 = crs_c_3*crs_qdd_1_o;
+        const real crs_alpha_1_o_in_axes3_x = crs_qdd_1_o*crs_s_3;
+        const real crs_alpha_1_o_t = crs_c_3_t*crs_qdd_1_o;
         /* (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real crs_alpha_3_o_x = crs_alpha_1_o_t + crs_zeta_3_x;
-        const real crs_alpha_3_o_y = crs_zeta_3_y - crs_alpha_1_o_t_2;
+        const real crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x;
+        const real crs_alpha_3_o_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_o_t;
         /* (crs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real crs_B_3_o_xy = crs_qdd_3_o - crs_W_3_xy;
-        const real crs_B_3_o_yx = -crs_W_3_xy - crs_qdd_3_o;
-        const real crs_B_3_o_zx = -crs_alpha_3_o_y - crs_zeta_3_y;
-        const real crs_B_3_o_zy = crs_alpha_3_o_x + crs_zeta_3_x;
-        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real crs_g_r0_x = m->crs_g_r0_x[i];
-        const real crs_g_r0_y = m->crs_g_r0_y[i];
-        const real crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x;
-        const real crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1;
-        const real crs_g_r0_z = m->crs_g_r0_z[i];
-        const real crs_acc_3_o_x = crs_u_1_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3;
-        const real crs_acc_3_o_y = crs_u_1_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3;
-        const real crs_acc_3_o_z = crs_u_1_tip_z - crs_g_r1_x;
-        /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real crs_J_3_xy = m->crs_J_3_xy[i];
-        const real crs_J_3_xz = m->crs_J_3_xz[i];
-        const real crs_J_3_yz = m->crs_J_3_yz[i];
-        const real crs_Sigma_3_yy = m->crs_Sigma_3_yy[i];
-        const real crs_Sigma_3_zz = m->crs_Sigma_3_zz[i];
-        const real crs_h_3_y = m->crs_h_3_y[i];
-        const real crs_h_3_z = m->crs_h_3_z[i];
-        const real crs_mu_3_o_x = crs_B_3_o_yx*crs_J_3_xz + crs_B_3_o_zy*crs_Sigma_3_yy +
-            crs_J_3_yz*(crs_W_3_t_2 - crs_W_3_t_3) + crs_Sigma_3_zz*crs_alpha_1_o_t +
-            crs_acc_3_o_z*crs_h_3_y - crs_B_3_o_zx*crs_J_3_xy - crs_acc_3_o_y*crs_h_3_z;
-        const real crs_Sigma_3_xx = m->crs_Sigma_3_xx[i];
-        const real crs_h_3_x = m->crs_h_3_x[i];
-        const real crs_mu_3_o_y = crs_B_3_o_zy*crs_J_3_xy + crs_acc_3_o_x*crs_h_3_z -
-            crs_B_3_o_xy*crs_J_3_yz - crs_B_3_o_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t -
-            crs_W_3_t_3) - crs_Sigma_3_zz*crs_alpha_1_o_t_2 - crs_acc_3_o_z*crs_h_3_x;
-        const real crs_mu_3_o_z = crs_B_3_o_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t -
-            crs_W_3_t_2) + crs_J_3_xz*crs_alpha_1_o_t + crs_acc_3_o_y*crs_h_3_x -
-            crs_B_3_o_xy*crs_Sigma_3_yy - crs_J_3_yz*crs_alpha_1_o_t_2 - crs_acc_3_o_x*crs_h_3_y;
+        const real crs_B_3_o_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_3_o;
+        const real crs_B_3_o_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3_o;
+        const real crs_B_3_o_in_axes3_zx = -crs_alpha_3_o_in_axes3_y - crs_zeta_3_in_axes3_y;
+        const real crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x;
         /* (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
-        const real crs_acc_2_o_z = crs_rel_o_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_o_y -
-            crs_qdd_3_o*crs_r_1_t;
+        const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
+        const real crs_acc_2_o_in_axes1_z = crs_qdd_3_o*crs_r_1_t + crs_rel_o_in_axes3_x*crs_s_3 -
+            crs_g_in_axes1_z - crs_c_3_t*crs_rel_o_in_axes3_y;
         /* (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_f_2_o_t = crs_acc_2_o_z*crs_link2_mass;
+        const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass;
+        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real crs_acc_3_t = m->crs_acc_3_t[i];
+        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
+        const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
+        const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
+        const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y -
+            crs_g_in_axes1_z*crs_s_3;
+        const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z +
+            crs_g_in_axes1_y*crs_s_3;
+        const real crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_x;
+        /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
+        const real crs_mu_3_o_t_2 = crs_omega_1_t*crs_omega_1_t;
+        const real crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t;
+        const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
+        const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
+        const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
+        const real crs_Sigma_3_in_axes3_yy = m->crs_Sigma_3_in_axes3_yy[i];
+        const real crs_Sigma_3_in_axes3_zz = m->crs_Sigma_3_in_axes3_zz[i];
+        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
+        const real crs_mu_3_o_in_axes3_x = crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz +
+            crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_o_t_2 -
+            crs_mu_3_o_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_x +
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy
+            - crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z;
+        const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
+        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+        const real crs_mu_3_o_in_axes3_y = crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy +
+            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz
+            - crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_o_t -
+            crs_mu_3_o_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_t -
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x;
+        const real crs_mu_3_o_in_axes3_z = crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+            crs_J_3_in_spec3_xy*(crs_mu_3_o_t - crs_mu_3_o_t_2) +
+            crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
+            crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
+            crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_o_t -
+            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y;
         /* (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real crs_J_2_xx = m->crs_J_2_xx[i];
-        const real crs_h_2_y = m->crs_h_2_y[i];
-        const real crs_h_2_z = m->crs_h_2_z[i];
-        const real crs_mu_1_o_z = crs_J_2_xx*crs_qdd_1_o - crs_g_r1_x*crs_h_2_y -
-            crs_g_r1_y*crs_h_2_z;
+        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
+        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
+        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
+        const real crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o -
+            crs_g_in_axes1_x*crs_h_2_in_spec1_y - crs_g_in_axes1_y*crs_h_2_in_spec1_z;
         /* (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real crs_N_1_o_z = crs_mu_1_o_z + crs_mu_3_o_x*crs_s_3 - crs_c_3*crs_mu_3_o_y;
-        /* (crs-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real crs_G_o_t = inv_crs_r_1_t_2*(crs_mu_3_o_z + crs_f_2_o_t*crs_r_1_t);
+        const real crs_N_1_o_in_axes1_z = crs_mu_1_o_in_axes1_z + crs_mu_3_o_in_axes3_x*crs_s_3 -
+            crs_c_3_t*crs_mu_3_o_in_axes3_y;
         /* (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real crs_c_o_x = crs_alpha_1_o_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3)
-            - crs_B_3_o_xy*crs_h_3_y - crs_G_o_t*crs_c_3 - crs_f_2_o_t*crs_s_3;
-        const real crs_c_o_y = crs_alpha_1_o_t*crs_h_3_z + crs_c_3*crs_f_2_o_t +
-            crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) - crs_B_3_o_yx*crs_h_3_x - crs_G_o_t*crs_s_3;
-        const real crs_c_o_z = crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_o_zx*crs_h_3_x -
-            crs_B_3_o_zy*crs_h_3_y - crs_N_1_o_z*inv_crs_v_1_z;
+        const real crs_c_o_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
+            crs_f_2_o_in_axes1_z*crs_r_1_t);
+        const real crs_c_o_in_axes3_x = crs_alpha_1_o_t*crs_h_3_in_spec3_z +
+            crs_h_3_in_spec3_x*(crs_mu_3_o_t_2 + crs_mu_3_o_t_3) -
+            crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_o_t -
+            crs_f_2_o_in_axes1_z*crs_s_3;
+        const real crs_c_o_in_axes3_y = crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
+            crs_c_3_t*crs_f_2_o_in_axes1_z + crs_h_3_in_spec3_y*(crs_mu_3_o_t + crs_mu_3_o_t_3) -
+            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_o_t*crs_s_3;
+        const real crs_c_o_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_o_t + crs_mu_3_o_t_2) -
+            crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
+            crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z;
         /* (crs-U) velocity and gravity terms of the leg force */
-        const real crs_U_in_base_x = -axis_x_crs_axes3_x*crs_c_o_x -
-            axis_y_crs_axes3_in_base_x*crs_c_o_y - axis_z_crs_axes3_in_base_x*crs_c_o_z;
-        const real crs_U_in_base_y = -axis_x_crs_axes3_y*crs_c_o_x -
-            axis_y_crs_axes3_in_base_y*crs_c_o_y - axis_z_crs_axes3_in_base_y*crs_c_o_z;
-        const real crs_U_in_base_z = -axis_x_crs_axes3_z*crs_c_o_x -
-            axis_y_crs_axes3_in_base_z*crs_c_o_y - axis_z_crs_axes3_in_base_z*crs_c_o_z;
+        const real crs_U_x = -axis_x_crs_axes3_x*crs_c_o_in_axes3_x -
+            axis_y_crs_axes3_x*crs_c_o_in_axes3_y - axis_z_crs_axes3_x*crs_c_o_in_axes3_z;
+        const real crs_U_y = -axis_x_crs_axes3_y*crs_c_o_in_axes3_x -
+            axis_y_crs_axes3_y*crs_c_o_in_axes3_y - axis_z_crs_axes3_y*crs_c_o_in_axes3_z;
+        const real crs_U_z = -axis_x_crs_axes3_z*crs_c_o_in_axes3_x -
+            axis_y_crs_axes3_z*crs_c_o_in_axes3_y - axis_z_crs_axes3_z*crs_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real crs_Z_a_t = crs_U_in_base_z*crs_q_in_base_y - crs_U_in_base_y*crs_q_in_base_z;
-        const real crs_Z_a_t_2 = crs_U_in_base_x*crs_q_in_base_z -
-            crs_U_in_base_z*crs_q_in_base_x;
-        const real crs_Z_a_t_3 = crs_U_in_base_y*crs_q_in_base_x -
-            crs_U_in_base_x*crs_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + crs_U_in_base_x : crs_U_in_base_x;  /* total_crs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + crs_U_in_base_y : crs_U_in_base_y;  /* total_crs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + crs_U_in_base_z : crs_U_in_base_z;  /* total_crs_z */
-        terms[3*count + k] = add ? terms[3*count + k] + crs_Z_a_t : crs_Z_a_t;  /* total_crs_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + crs_Z_a_t_2 : crs_Z_a_t_2;  /* total_crs_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + crs_Z_a_t_3 : crs_Z_a_t_3;  /* total_crs_z_2 */
+        const real crs_Z_a_t = crs_U_z*crs_q_y - crs_U_y*crs_q_z;
+        const real crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x;
+        const real crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + crs_U_x : crs_U_x;  /* Z_t_crs_x */
+        terms[1*count + k] = add ? terms[1*count + k] + crs_U_y : crs_U_y;  /* Z_t_crs_y */
+        terms[2*count + k] = add ? terms[2*count + k] + crs_U_z : crs_U_z;  /* Z_t_crs_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + crs_Z_a_t : crs_Z_a_t;  /* Z_a_crs_x */
+        terms[4*count + k] = add ? terms[4*count + k] + crs_Z_a_t_2 : crs_Z_a_t_2;  /* Z_a_crs_y */
+        terms[5*count + k] = add ? terms[5*count + k] + crs_Z_a_t_3 : crs_Z_a_t_3;  /* Z_a_crs_z */
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[1*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[0*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -2916,27 +3001,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_crs_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_crs_x;
+        const real Z_t_crs_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_crs_x;
         const real Z_p_y = s[19*w + k];
-        const real total_crs_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_crs_y;
+        const real Z_t_crs_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_crs_y;
         const real Z_p_z = s[20*w + k];
-        const real total_crs_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_crs_z;
+        const real Z_t_crs_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_crs_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_crs_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_crs_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_crs_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_crs_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_crs_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_crs_z_2;
+        const real Z_a_crs_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_crs_x + Z_q_x;
+        const real Z_a_crs_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_crs_y + Z_q_y;
+        const real Z_a_crs_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_crs_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -3037,27 +3124,27 @@ INLINE void H_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -3075,106 +3162,103 @@ INLINE void H_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
         /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
         /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 -
-            crs_base_frame_xy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 -
-            crs_base_frame_yy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 -
-            crs_base_frame_zy*crs_c_1;
-        const real crs_w_1_t = crs_s_1*crs_s_3;
-        const real crs_w_1_t_2 = crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_in_base_x = crs_base_frame_xy*crs_w_1_t +
-            crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_y = crs_base_frame_yy*crs_w_1_t +
-            crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_z = crs_base_frame_zy*crs_w_1_t +
-            crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3;
-        const real inv_crs_v_1_z = 1/crs_v_1_z;
+        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
+        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
+        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
+        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
+        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
+        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
         /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_r_1_t/crs_r_1_t_2;
-        const real crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t;
-        const real crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z;
-        const real crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z;
-        const real crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z;
+        const real crs_w_2_t = crs_s_1*crs_s_3;
+        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
+        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
+            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
+        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
+            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
+        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
+            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
+        const real crs_w_2_t_3 = crs_r_1_t/crs_d_4_in_axes1_z;
+        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
+        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
+        const real crs_w_2_x = axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y);
+        const real crs_w_2_y = axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z);
+        const real crs_w_2_z = axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x);
         /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        const real crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4;
-        const real crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5;
-        const real crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_in_base_x = axis_y_crs_axes3_in_base_x*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y);
-        const real crs_w_2_in_base_y = axis_y_crs_axes3_in_base_y*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z);
-        const real crs_w_2_in_base_z = axis_y_crs_axes3_in_base_z*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x);
+        const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
+        const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
+        const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
         /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        const real crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z -
-            crs_q_in_base_z*crs_w_2_in_base_y;
-        const real crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x -
-            crs_q_in_base_x*crs_w_2_in_base_z;
-        const real crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y -
-            crs_q_in_base_y*crs_w_2_in_base_x;
-        o[0*count + k] = crs_w_1_t_3;
-        o[1*count + k] = crs_w_1_t_4;
-        o[2*count + k] = crs_w_1_t_5;
+        const real crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y;
+        const real crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z;
+        const real crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x;
+        /* (crs-w_1) reciprocal vector 1 */
+        o[0*count + k] = crs_w_1_x;
+        o[1*count + k] = crs_w_1_y;
+        o[2*count + k] = crs_w_1_z;
+        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = crs_H_a_1_x;
         o[4*count + k] = crs_H_a_1_y;
         o[5*count + k] = crs_H_a_1_z;
-        o[6*count + k] = crs_w_2_in_base_x;
-        o[7*count + k] = crs_w_2_in_base_y;
-        o[8*count + k] = crs_w_2_in_base_z;
+        /* (crs-w_2) reciprocal vector 2 */
+        o[6*count + k] = crs_w_2_x;
+        o[7*count + k] = crs_w_2_y;
+        o[8*count + k] = crs_w_2_z;
+        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = crs_H_a_2_x;
         o[10*count + k] = crs_H_a_2_y;
         o[11*count + k] = crs_H_a_2_z;
-        o[14*count + k] = ((crs_w_1_t_3 + (crs_w_1_t_4 + crs_w_1_t_5)) + (crs_H_a_1_x +
-            (crs_H_a_1_y + crs_H_a_1_z))) + ((crs_w_2_in_base_x + (crs_w_2_in_base_y +
-            crs_w_2_in_base_z)) + (crs_H_a_2_x + (crs_H_a_2_y + crs_H_a_2_z)));
+        o[14*count + k] = ((crs_w_1_x + (crs_w_1_y + crs_w_1_z)) + (crs_H_a_1_x + (crs_H_a_1_y +
+            crs_H_a_1_z))) + ((crs_w_2_x + (crs_w_2_y + crs_w_2_z)) + (crs_H_a_2_x + (crs_H_a_2_y
+            + crs_H_a_2_z)));
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[13*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[12*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -3286,33 +3370,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3320,31 +3391,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3372,9 +3469,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3392,27 +3489,27 @@ INLINE void required_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -3430,264 +3527,275 @@ INLINE void required_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 -
-            crs_base_frame_xy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 -
-            crs_base_frame_yy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 -
-            crs_base_frame_zy*crs_c_1;
-        const real crs_w_1_t = crs_s_1*crs_s_3;
-        const real crs_w_1_t_2 = crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_in_base_x = crs_base_frame_xy*crs_w_1_t +
-            crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_y = crs_base_frame_yy*crs_w_1_t +
-            crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_z = crs_base_frame_zy*crs_w_1_t +
-            crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x;
-        const real inv_crs_v_1_z = 1/crs_v_1_z;
-        /* (crs-w_3) reciprocal vector 3 */
-        const real inv_crs_r_1_t_2 = 1/crs_r_1_t_2;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2;
-        const real crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t;
-        const real crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z;
+        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
         const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y;
+        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
+        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
         const real t_dot_x = s[12*w + j];
         const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        const real crs_S_dot_r0_x = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy
-            + crs_S_dot_z*crs_base_frame_zy;
-        const real crs_S_dot_r0_y = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz
-            + crs_S_dot_z*crs_base_frame_zz;
-        /* (crs-qd_3) rate of joint 3 */
-        const real crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1);
-        const real crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1);
-        const real crs_qd_3_t = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t;
-        /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_t = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t_2 = crs_c_3*crs_qd_1;
-        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3;
-        const real crs_zeta_3_y = crs_omega_1_t*crs_qd_3;
-        /* (crs-W_3) centripetal tensor of link 3 */
-        const real crs_W_3_t = crs_omega_1_t*crs_omega_1_t;
-        const real crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2;
-        const real crs_W_3_t_3 = crs_qd_3*crs_qd_3;
-        const real crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2;
-        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3;
-        const real crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x;
-        const real crs_bias_x = crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 -
-            crs_bias_t_3*crs_omega_1_t_2;
-        const real crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_z = -crs_bias_t_2*crs_omega_1_t -
-            crs_platform_joint_offset_x*crs_zeta_3_y - 2*crs_qd_3_t*(crs_c_3*crs_omega_1_t -
-            crs_omega_1_t_2*crs_s_3);
-        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real crs_g_r0_x = m->crs_g_r0_x[i];
-        const real crs_g_r0_y = m->crs_g_r0_y[i];
-        const real crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x;
-        const real crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1;
+        /* (crs-r_1) from joint 1 to the connection point, along the links */
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
+        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
         /* (crs-w_1) reciprocal vector 1 */
-        const real crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z;
-        const real crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z;
-        const real crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z;
-        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        const real crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4;
-        const real crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5;
-        const real crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3;
+        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
+        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
+        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
+        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
+        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
+        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
         /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x +
-            axis_y_crs_axes3_in_base_x*crs__r1_y;
-        const real crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x +
-            axis_y_crs_axes3_in_base_y*crs__r1_y;
-        const real crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x +
-            axis_y_crs_axes3_in_base_z*crs__r1_y;
-        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        const real crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z -
-            crs_q_in_base_z*crs_w_2_in_base_y;
-        const real crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x -
-            crs_q_in_base_x*crs_w_2_in_base_z;
-        const real crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y -
-            crs_q_in_base_y*crs_w_2_in_base_x;
+        const real crs_w_2_t = crs_s_1*crs_s_3;
+        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
+        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
+            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
+        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
+            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
+        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
+            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
+        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
+        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
+        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
+        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
+        const real crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z;
+        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
+        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
+        const real crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_x*crs_w_2_in_axes3_y;
+        const real crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_y*crs_w_2_in_axes3_y;
+        const real crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_z*crs_w_2_in_axes3_y;
+        /* (crs-qd_1) rate of joint 1 */
+        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy;
+        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz;
+        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
+        /* (crs-qd_2) rate of joint 2 */
+        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
+            crs_qd_1_t*crs_s_1);
+        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
+        /* (crs-omega_1) angular velocity of link 1 */
+        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
+        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
+        /* (crs-W_3) centripetal tensor of link 3 */
+        const real crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t;
+        const real crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t;
         /* (crs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y;
+        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z;
+        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x;
+        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x;
         /* (crs-S_ddot) acceleration of the connection point */
         const real crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
         const real crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
         const real crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
-        const real crs_S_ddot_tip_x = axis_x_crs_axes3_x*crs_S_ddot_x +
+        const real crs_S_ddot_in_axes3_x = axis_x_crs_axes3_x*crs_S_ddot_x +
             axis_x_crs_axes3_y*crs_S_ddot_y + axis_x_crs_axes3_z*crs_S_ddot_z;
-        const real crs_S_ddot_tip_y = axis_y_crs_axes3_in_base_x*crs_S_ddot_x +
-            axis_y_crs_axes3_in_base_y*crs_S_ddot_y + axis_y_crs_axes3_in_base_z*crs_S_ddot_z;
-        const real crs_S_ddot_tip_z = axis_z_crs_axes3_in_base_x*crs_S_ddot_x +
-            axis_z_crs_axes3_in_base_y*crs_S_ddot_y + axis_z_crs_axes3_in_base_z*crs_S_ddot_z;
+        const real crs_S_ddot_in_axes3_y = axis_y_crs_axes3_x*crs_S_ddot_x +
+            axis_y_crs_axes3_y*crs_S_ddot_y + axis_y_crs_axes3_z*crs_S_ddot_z;
+        const real crs_S_ddot_in_axes3_z = axis_z_crs_axes3_x*crs_S_ddot_x +
+            axis_z_crs_axes3_y*crs_S_ddot_y + axis_z_crs_axes3_z*crs_S_ddot_z;
+        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t;
+        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
+        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
+            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
+        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
+        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
+        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
+            crs_bias_t_3*crs_omega_1_t;
+        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
+            crs_bias_t_3*crs_omega_1_in_axes3_x;
+        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
+            crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
+            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3);
         /* (crs-rel) acceleration of the connection point left to the joint accelerations */
-        const real crs_rel_x = crs_S_ddot_tip_x - crs_bias_x;
-        const real crs_rel_y = crs_S_ddot_tip_y - crs_bias_y;
-        const real crs_rel_z = crs_S_ddot_tip_z - crs_bias_z;
+        const real crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x;
+        const real crs_rel_in_axes3_y = crs_S_ddot_in_axes3_y - crs_bias_in_axes3_y;
+        const real crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z;
         /* (crs-qdd_1) acceleration of joint 1 */
-        const real crs_qdd_1 = crs_rel_z*inv_crs_v_1_z;
-        const real crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3);
-        /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real crs_g_r0_z = m->crs_g_r0_z[i];
-        const real crs_acc_3_x = crs_S_ddot_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3;
-        const real crs_acc_3_y = crs_S_ddot_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3;
-        const real crs_acc_3_z = crs_S_ddot_tip_z - crs_g_r1_x;
+        const real crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z;
+        /* (crs-qdd_3) acceleration of joint 3 */
+        const real crs_qdd_3_t = inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x -
+            crs_rel_in_axes3_y*crs_s_3);
         /* (crs-alpha_1) angular acceleration of link 1 */
-        const real crs_alpha_1_t = crs_qdd_1*crs_s_3;
-        const real crs_alpha_1_t_2 = crs_c_3*crs_qdd_1;
+        const real crs_alpha_1_in_axes3_x = crs_qdd_1*crs_s_3;
+        const real crs_alpha_1_t = crs_c_3_t*crs_qdd_1;
         /* (crs-alpha_3) angular acceleration of link 3 */
-        const real crs_alpha_3_x = crs_alpha_1_t + crs_zeta_3_x;
-        const real crs_alpha_3_y = crs_zeta_3_y - crs_alpha_1_t_2;
+        const real crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x;
+        const real crs_alpha_3_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_t;
         /* (crs-B_3) acceleration tensor of link 3 */
-        const real crs_B_3_xy = crs_qdd_3 - crs_W_3_xy;
-        const real crs_B_3_yx = -crs_W_3_xy - crs_qdd_3;
-        const real crs_B_3_zx = -crs_alpha_3_y - crs_zeta_3_y;
-        const real crs_B_3_zy = crs_alpha_3_x + crs_zeta_3_x;
-        /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real crs_J_3_xy = m->crs_J_3_xy[i];
-        const real crs_J_3_xz = m->crs_J_3_xz[i];
-        const real crs_J_3_yz = m->crs_J_3_yz[i];
-        const real crs_Sigma_3_yy = m->crs_Sigma_3_yy[i];
-        const real crs_Sigma_3_zz = m->crs_Sigma_3_zz[i];
-        const real crs_h_3_y = m->crs_h_3_y[i];
-        const real crs_h_3_z = m->crs_h_3_z[i];
-        const real crs_mu_3_x = crs_B_3_yx*crs_J_3_xz + crs_B_3_zy*crs_Sigma_3_yy +
-            crs_J_3_yz*(crs_W_3_t_2 - crs_W_3_t_3) + crs_Sigma_3_zz*crs_alpha_1_t +
-            crs_acc_3_z*crs_h_3_y - crs_B_3_zx*crs_J_3_xy - crs_acc_3_y*crs_h_3_z;
-        const real crs_Sigma_3_xx = m->crs_Sigma_3_xx[i];
-        const real crs_h_3_x = m->crs_h_3_x[i];
-        const real crs_mu_3_y = crs_B_3_zy*crs_J_3_xy + crs_acc_3_x*crs_h_3_z -
-            crs_B_3_xy*crs_J_3_yz - crs_B_3_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t -
-            crs_W_3_t_3) - crs_Sigma_3_zz*crs_alpha_1_t_2 - crs_acc_3_z*crs_h_3_x;
-        const real crs_mu_3_z = crs_B_3_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
-            crs_J_3_xz*crs_alpha_1_t + crs_acc_3_y*crs_h_3_x - crs_B_3_xy*crs_Sigma_3_yy -
-            crs_J_3_yz*crs_alpha_1_t_2 - crs_acc_3_x*crs_h_3_y;
+        const real crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy + crs_qdd_3_t;
+        const real crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy - crs_qdd_3_t;
+        const real crs_B_3_in_axes3_zx = -crs_alpha_3_in_axes3_y - crs_zeta_3_in_axes3_y;
+        const real crs_B_3_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x;
         /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real crs_acc_2_z = crs_rel_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_y -
-            crs_qdd_3*crs_r_1_t;
+        const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
+        const real crs_acc_2_in_axes1_z = crs_rel_in_axes3_x*crs_s_3 - crs_g_in_axes1_z -
+            crs_c_3_t*crs_rel_in_axes3_y - crs_qdd_3_t*crs_r_1_t;
         /* (crs-f_2) inertia force of link 2 less its weight */
         const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_f_2_t = crs_acc_2_z*crs_link2_mass;
+        const real crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass;
+        /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real crs_acc_3_t = m->crs_acc_3_t[i];
+        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
+        const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
+        const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
+        const real crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y -
+            crs_g_in_axes1_z*crs_s_3;
+        const real crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z +
+            crs_g_in_axes1_y*crs_s_3;
+        const real crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_x;
+        /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
+        const real crs_mu_3_t_2 = crs_omega_1_t*crs_omega_1_t;
+        const real crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t;
+        const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
+        const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
+        const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
+        const real crs_Sigma_3_in_axes3_yy = m->crs_Sigma_3_in_axes3_yy[i];
+        const real crs_Sigma_3_in_axes3_zz = m->crs_Sigma_3_in_axes3_zz[i];
+        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
+        const real crs_mu_3_in_axes3_x = crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz +
+            crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_t_2 -
+            crs_mu_3_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
+            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
+            crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z;
+        const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
+        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+        const real crs_mu_3_in_axes3_y = crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy +
+            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz -
+            crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_t -
+            crs_mu_3_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_t -
+            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x;
+        const real crs_mu_3_in_axes3_z = crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+            crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2) +
+            crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x + crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x -
+            crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_t -
+            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y;
         /* (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real crs_J_2_xx = m->crs_J_2_xx[i];
-        const real crs_h_2_y = m->crs_h_2_y[i];
-        const real crs_h_2_z = m->crs_h_2_z[i];
-        const real crs_mu_1_z = crs_J_2_xx*crs_qdd_1 - crs_g_r1_x*crs_h_2_y -
-            crs_g_r1_y*crs_h_2_z;
+        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
+        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
+        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
+        const real crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 -
+            crs_g_in_axes1_x*crs_h_2_in_spec1_y - crs_g_in_axes1_y*crs_h_2_in_spec1_z;
         /* (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real crs_N_1_z = crs_mu_1_z + crs_mu_3_x*crs_s_3 - crs_c_3*crs_mu_3_y;
-        /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real crs_G_t = inv_crs_r_1_t_2*(crs_mu_3_z + crs_f_2_t*crs_r_1_t);
+        const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z + crs_mu_3_in_axes3_x*crs_s_3 -
+            crs_c_3_t*crs_mu_3_in_axes3_y;
         /* (crs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real crs_c_x = crs_alpha_1_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) -
-            crs_B_3_xy*crs_h_3_y - crs_G_t*crs_c_3 - crs_f_2_t*crs_s_3;
-        const real crs_c_y = crs_alpha_1_t*crs_h_3_z + crs_c_3*crs_f_2_t + crs_h_3_y*(crs_W_3_t +
-            crs_W_3_t_3) - crs_B_3_yx*crs_h_3_x - crs_G_t*crs_s_3;
-        const real crs_c_z = crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_zx*crs_h_3_x -
-            crs_B_3_zy*crs_h_3_y - crs_N_1_z*inv_crs_v_1_z;
-        const real crs_c_in_base_x = axis_x_crs_axes3_x*crs_c_x +
-            axis_y_crs_axes3_in_base_x*crs_c_y + axis_z_crs_axes3_in_base_x*crs_c_z;
-        const real crs_c_in_base_y = axis_x_crs_axes3_y*crs_c_x +
-            axis_y_crs_axes3_in_base_y*crs_c_y + axis_z_crs_axes3_in_base_y*crs_c_z;
-        const real crs_c_in_base_z = axis_x_crs_axes3_z*crs_c_x +
-            axis_y_crs_axes3_in_base_z*crs_c_y + axis_z_crs_axes3_in_base_z*crs_c_z;
+        const real crs_c_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z +
+            crs_f_2_in_axes1_z*crs_r_1_t);
+        const real crs_c_in_axes3_x = crs_alpha_1_t*crs_h_3_in_spec3_z +
+            crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) -
+            crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_t -
+            crs_f_2_in_axes1_z*crs_s_3;
+        const real crs_c_in_axes3_y = crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z +
+            crs_c_3_t*crs_f_2_in_axes1_z + crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
+            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t*crs_s_3;
+        const real crs_c_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) -
+            crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y -
+            crs_N_1_in_axes1_z*crs_w_1_in_axes3_z;
+        const real crs_c_x = axis_x_crs_axes3_x*crs_c_in_axes3_x +
+            axis_y_crs_axes3_x*crs_c_in_axes3_y + axis_z_crs_axes3_x*crs_c_in_axes3_z;
+        const real crs_c_y = axis_x_crs_axes3_y*crs_c_in_axes3_x +
+            axis_y_crs_axes3_y*crs_c_in_axes3_y + axis_z_crs_axes3_y*crs_c_in_axes3_z;
+        const real crs_c_z = axis_x_crs_axes3_z*crs_c_in_axes3_x +
+            axis_y_crs_axes3_z*crs_c_in_axes3_y + axis_z_crs_axes3_z*crs_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real crs_R_a_t = crs_c_in_base_z*crs_q_in_base_y - crs_c_in_base_y*crs_q_in_base_z;
-        const real crs_R_a_t_2 = crs_c_in_base_x*crs_q_in_base_z -
-            crs_c_in_base_z*crs_q_in_base_x;
-        const real crs_R_a_t_3 = crs_c_in_base_y*crs_q_in_base_x -
-            crs_c_in_base_x*crs_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + crs_c_in_base_x : crs_c_in_base_x;  /* total_crs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + crs_c_in_base_y : crs_c_in_base_y;  /* total_crs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + crs_c_in_base_z : crs_c_in_base_z;  /* total_crs_z */
-        terms[3*count + k] = add ? terms[3*count + k] + crs_R_a_t : crs_R_a_t;  /* total_crs_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + crs_R_a_t_2 : crs_R_a_t_2;  /* total_crs_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + crs_R_a_t_3 : crs_R_a_t_3;  /* total_crs_z_2 */
-        o[0*count + k] = crs_w_1_t_3;
-        o[1*count + k] = crs_w_1_t_4;
-        o[2*count + k] = crs_w_1_t_5;
+        const real crs_R_a_t = crs_c_y*crs_q_z - crs_c_z*crs_q_y;
+        const real crs_R_a_t_2 = crs_c_z*crs_q_x - crs_c_x*crs_q_z;
+        const real crs_R_a_t_3 = crs_c_x*crs_q_y - crs_c_y*crs_q_x;
+        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
+        const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
+        const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
+        const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
+        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
+        const real crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y;
+        const real crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z;
+        const real crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + crs_c_x : crs_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + crs_c_y : crs_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + crs_c_z : crs_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + crs_R_a_t : crs_R_a_t;  /* R_a_crs_x */
+        terms[4*count + k] = add ? terms[4*count + k] + crs_R_a_t_2 : crs_R_a_t_2;  /* R_a_crs_y */
+        terms[5*count + k] = add ? terms[5*count + k] + crs_R_a_t_3 : crs_R_a_t_3;  /* R_a_crs_z */
+        /* (crs-w_1) reciprocal vector 1 */
+        o[0*count + k] = crs_w_1_x;
+        o[1*count + k] = crs_w_1_y;
+        o[2*count + k] = crs_w_1_z;
+        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = crs_H_a_1_x;
         o[4*count + k] = crs_H_a_1_y;
         o[5*count + k] = crs_H_a_1_z;
-        o[6*count + k] = crs_w_2_in_base_x;
-        o[7*count + k] = crs_w_2_in_base_y;
-        o[8*count + k] = crs_w_2_in_base_z;
+        /* (crs-w_2) reciprocal vector 2 */
+        o[6*count + k] = crs_w_2_x;
+        o[7*count + k] = crs_w_2_y;
+        o[8*count + k] = crs_w_2_z;
+        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = crs_H_a_2_x;
         o[10*count + k] = crs_H_a_2_y;
         o[11*count + k] = crs_H_a_2_z;
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[13*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[12*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -3717,28 +3825,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_crs_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_crs_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_crs_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_crs_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_crs_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_crs_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_crs_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_crs_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_crs_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_crs_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_crs_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_crs_z_2;
+        const real R_a_crs_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_crs_x + mu_p_x;
+        const real R_a_crs_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_crs_y + mu_p_y;
+        const real R_a_crs_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_crs_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -3875,35 +3985,37 @@ INLINE void inverse_kinematics_legs_crs(const prepared *m, size_t w, size_t leg,
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-q_1) displacement of joint 1 */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_q_1 = angle(crs_py_1*crs_root_1*inv_crs_rho2_1,
+            crs_px_1*crs_root_1*inv_crs_rho2_1);
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        /* (crs-q_1) displacement of joint 1 */
-        const real crs_q_1 = angle(crs_py_1*crs_root_1*inv_crs_rho2_1,
-            crs_px_1*crs_root_1*inv_crs_rho2_1);
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-q_3) displacement of joint 3 */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
         const real crs_q_3 = angle(crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t,
-            crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t);
+            crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t);
+        /* (crs-q_1) displacement of joint 1 */
         o[0*count + k] = crs_q_1;
+        /* (crs-q_2) displacement of joint 2 */
         o[1*count + k] = crs_q_2;
+        /* (crs-q_3) displacement of joint 3 */
         o[2*count + k] = crs_q_3;
         o[5*count + k] = crs_q_1 + (crs_q_2 + crs_q_3);
         const real crs_size_t_2 = m->crs_size_t_2[i];
@@ -4031,27 +4143,27 @@ INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t leg, size_t
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -4069,69 +4181,74 @@ INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t leg, size_t
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real crs_S_dot_x = t_dot_x + crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z;
+        const real crs_S_dot_x = t_dot_x + crs_q_z*omega_y - crs_q_y*omega_z;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real crs_S_dot_y = t_dot_y + crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x;
+        const real crs_S_dot_y = t_dot_y + crs_q_x*omega_z - crs_q_z*omega_x;
         const real t_dot_z = s[14*w + j];
-        const real crs_S_dot_z = t_dot_z + crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y;
-        const real crs_S_dot_r0_x = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy
-            + crs_S_dot_z*crs_base_frame_zy;
-        const real crs_S_dot_r0_y = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz
-            + crs_S_dot_z*crs_base_frame_zz;
-        /* (crs-qd_3) rate of joint 3 */
-        const real crs_qd_1 = (crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)/crs_v_1_z;
-        const real crs_qd_3 = (-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)/crs_r_1_t_2;
-        const real crs_qd_3_t = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t;
+        const real crs_S_dot_z = t_dot_z + crs_q_y*omega_x - crs_q_x*omega_y;
+        /* (crs-r_1) from joint 1 to the connection point, along the links */
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
+        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
+        /* (crs-qd_1) rate of joint 1 */
+        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy;
+        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz;
+        const real crs_qd_1 = (crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)/crs_v_1_in_axes3_z;
+        /* (crs-qd_2) rate of joint 2 */
+        const real crs_qd_2_t = (crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)/crs_d_4_in_axes1_z;
+        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
+        /* (crs-qd_1) rate of joint 1 */
         o[0*count + k] = crs_qd_1;
-        o[1*count + k] = crs_qd_3_t;
-        o[2*count + k] = -crs_qd_3;
-        o[5*count + k] = crs_qd_1 + (crs_qd_3_t + crs_qd_3);
+        /* (crs-qd_2) rate of joint 2 */
+        o[1*count + k] = crs_qd_2;
+        /* (crs-qd_3) rate of joint 3 */
+        o[2*count + k] = -crs_qd_2_t;
+        o[5*count + k] = crs_qd_1 + (crs_qd_2 + crs_qd_2_t);
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[4*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[3*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -4276,27 +4393,27 @@ INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t leg
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -4314,134 +4431,141 @@ INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t leg
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 -
-            crs_base_frame_xy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 -
-            crs_base_frame_yy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 -
-            crs_base_frame_zy*crs_c_1;
-        const real crs_w_1_t = crs_s_1*crs_s_3;
-        const real crs_w_1_t_2 = crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_in_base_x = crs_base_frame_xy*crs_w_1_t +
-            crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_y = crs_base_frame_yy*crs_w_1_t +
-            crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_z = crs_base_frame_zy*crs_w_1_t +
-            crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3;
-        const real inv_crs_v_1_z = 1/crs_v_1_z;
-        /* (crs-w_3) reciprocal vector 3 */
-        const real inv_crs_r_1_t_2 = 1/crs_r_1_t_2;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z;
+        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
         const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y;
+        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
+        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
         const real t_dot_x = s[12*w + j];
         const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        const real crs_S_dot_r0_x = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy
-            + crs_S_dot_z*crs_base_frame_zy;
-        const real crs_S_dot_r0_y = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz
-            + crs_S_dot_z*crs_base_frame_zz;
-        /* (crs-qd_3) rate of joint 3 */
-        const real crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1);
-        const real crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1);
-        const real crs_qd_3_t = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t;
+        /* (crs-r_1) from joint 1 to the connection point, along the links */
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
+        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
+        /* (crs-w_1) reciprocal vector 1 */
+        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+        /* (crs-qd_1) rate of joint 1 */
+        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy;
+        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz;
+        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
+        /* (crs-qd_2) rate of joint 2 */
+        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
+        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
+            crs_qd_1_t*crs_s_1);
+        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
         /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_t = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t_2 = crs_c_3*crs_qd_1;
-        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3;
-        const real crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x;
-        const real crs_bias_x = crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 -
-            crs_bias_t_3*crs_omega_1_t_2;
-        const real crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_z = -crs_bias_t_2*crs_omega_1_t - 2*crs_qd_3_t*(crs_c_3*crs_omega_1_t
-            - crs_omega_1_t_2*crs_s_3) - crs_omega_1_t*crs_platform_joint_offset_x*crs_qd_3;
+        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
+        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
         /* (crs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y;
+        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z;
+        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x;
+        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x;
         /* (crs-S_ddot) acceleration of the connection point */
         const real crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
         const real crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
         const real crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
+        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
+        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
+            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
+        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
+        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
+        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
+            crs_bias_t_3*crs_omega_1_t;
+        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
+            crs_bias_t_3*crs_omega_1_in_axes3_x;
+        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
+            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3) -
+            crs_omega_1_in_axes3_x*crs_platform_joint_offset_x*crs_qd_2_t;
         /* (crs-rel) acceleration of the connection point left to the joint accelerations */
-        const real crs_rel_x = crs_S_ddot_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z
-            - axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y) +
-            crs_S_ddot_y*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z) +
-            crs_S_ddot_z*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x) - crs_bias_x;
-        const real crs_rel_y = axis_y_crs_axes3_in_base_x*crs_S_ddot_x +
-            axis_y_crs_axes3_in_base_y*crs_S_ddot_y + axis_y_crs_axes3_in_base_z*crs_S_ddot_z -
-            crs_bias_y;
-        const real crs_rel_z = axis_z_crs_axes3_in_base_x*crs_S_ddot_x +
-            axis_z_crs_axes3_in_base_y*crs_S_ddot_y + axis_z_crs_axes3_in_base_z*crs_S_ddot_z -
-            crs_bias_z;
+        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
+        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
+        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
+        const real crs_rel_t = crs_s_1*crs_s_3;
+        const real crs_rel_t_2 = -crs_c_1*crs_s_3;
+        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_rel_t +
+            crs_base_frame_xz*crs_rel_t_2 - crs_base_frame_xx*crs_c_3_t;
+        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_rel_t +
+            crs_base_frame_yz*crs_rel_t_2 - crs_base_frame_yx*crs_c_3_t;
+        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_rel_t +
+            crs_base_frame_zz*crs_rel_t_2 - crs_base_frame_zx*crs_c_3_t;
+        const real crs_rel_in_axes3_x = crs_S_ddot_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y) +
+            crs_S_ddot_y*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z) +
+            crs_S_ddot_z*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x) - crs_bias_in_axes3_x;
+        const real crs_rel_in_axes3_y = axis_y_crs_axes3_x*crs_S_ddot_x +
+            axis_y_crs_axes3_y*crs_S_ddot_y + axis_y_crs_axes3_z*crs_S_ddot_z -
+            crs_bias_in_axes3_y;
+        const real crs_rel_in_axes3_z = axis_z_crs_axes3_x*crs_S_ddot_x +
+            axis_z_crs_axes3_y*crs_S_ddot_y + axis_z_crs_axes3_z*crs_S_ddot_z -
+            crs_bias_in_axes3_z;
         /* (crs-qdd_1) acceleration of joint 1 */
-        const real crs_qdd_1 = crs_rel_z*inv_crs_v_1_z;
-        const real crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3);
-        const real crs_qdd_1_t = crs_c_3*crs_rel_y + crs_qdd_3*crs_r_1_t - crs_rel_x*crs_s_3;
+        const real crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z;
+        /* (crs-qdd_2) acceleration of joint 2 */
+        const real crs_qdd_2_t = inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x -
+            crs_rel_in_axes3_y*crs_s_3);
+        const real crs_qdd_2 = crs_rel_in_axes3_x*crs_s_3 - crs_c_3_t*crs_rel_in_axes3_y -
+            crs_qdd_2_t*crs_r_1_t;
+        /* (crs-qdd_1) acceleration of joint 1 */
         o[0*count + k] = crs_qdd_1;
-        o[1*count + k] = -crs_qdd_1_t;
-        o[2*count + k] = -crs_qdd_3;
-        o[5*count + k] = crs_qdd_1 + (crs_qdd_1_t + crs_qdd_3);
+        /* (crs-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = crs_qdd_2;
+        /* (crs-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = -crs_qdd_2_t;
+        o[5*count + k] = crs_qdd_1 + (crs_qdd_2 + crs_qdd_2_t);
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[4*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[3*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -4587,27 +4711,27 @@ INLINE void legs_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -4625,243 +4749,256 @@ INLINE void legs_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 -
-            crs_base_frame_xy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 -
-            crs_base_frame_yy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 -
-            crs_base_frame_zy*crs_c_1;
-        const real crs_w_1_t = crs_s_1*crs_s_3;
-        const real crs_w_1_t_2 = crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_in_base_x = crs_base_frame_xy*crs_w_1_t +
-            crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_y = crs_base_frame_yy*crs_w_1_t +
-            crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_z = crs_base_frame_zy*crs_w_1_t +
-            crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x;
-        const real inv_crs_v_1_z = 1/crs_v_1_z;
-        /* (crs-w_3) reciprocal vector 3 */
-        const real inv_crs_r_1_t_2 = 1/crs_r_1_t_2;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2;
-        const real crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t;
-        const real crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z;
+        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
         const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y;
+        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
+        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
         const real t_dot_x = s[12*w + j];
         const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        const real crs_S_dot_r0_x = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy
-            + crs_S_dot_z*crs_base_frame_zy;
-        const real crs_S_dot_r0_y = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz
-            + crs_S_dot_z*crs_base_frame_zz;
-        /* (crs-qd_3) rate of joint 3 */
-        const real crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1);
-        const real crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1);
-        const real crs_qd_3_t = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t;
-        /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_t = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t_2 = crs_c_3*crs_qd_1;
-        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3;
-        const real crs_zeta_3_y = crs_omega_1_t*crs_qd_3;
-        /* (crs-W_3) centripetal tensor of link 3 */
-        const real crs_W_3_t = crs_omega_1_t*crs_omega_1_t;
-        const real crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2;
-        const real crs_W_3_t_3 = crs_qd_3*crs_qd_3;
-        const real crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2;
-        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3;
-        const real crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x;
-        const real crs_bias_x = crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 -
-            crs_bias_t_3*crs_omega_1_t_2;
-        const real crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_z = -crs_bias_t_2*crs_omega_1_t -
-            crs_platform_joint_offset_x*crs_zeta_3_y - 2*crs_qd_3_t*(crs_c_3*crs_omega_1_t -
-            crs_omega_1_t_2*crs_s_3);
-        /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real crs_g_r0_x = m->crs_g_r0_x[i];
-        const real crs_g_r0_y = m->crs_g_r0_y[i];
-        const real crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x;
-        const real crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1;
+        /* (crs-r_1) from joint 1 to the connection point, along the links */
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
+        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
         /* (crs-w_1) reciprocal vector 1 */
-        const real crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z;
-        const real crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z;
-        const real crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z;
+        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
+        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
+        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
+        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
+        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
+        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
         /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x +
-            axis_y_crs_axes3_in_base_x*crs__r1_y;
-        const real crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x +
-            axis_y_crs_axes3_in_base_y*crs__r1_y;
-        const real crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x +
-            axis_y_crs_axes3_in_base_z*crs__r1_y;
+        const real crs_w_2_t = crs_s_1*crs_s_3;
+        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
+        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
+            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
+        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
+            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
+        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
+            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
+        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
+        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
+        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
+        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
+        const real crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z;
+        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
+        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
+        const real crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_x*crs_w_2_in_axes3_y;
+        const real crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_y*crs_w_2_in_axes3_y;
+        const real crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x +
+            axis_y_crs_axes3_z*crs_w_2_in_axes3_y;
+        /* (crs-qd_1) rate of joint 1 */
+        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy;
+        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz;
+        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
+        /* (crs-qd_2) rate of joint 2 */
+        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
+            crs_qd_1_t*crs_s_1);
+        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
+        /* (crs-omega_1) angular velocity of link 1 */
+        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
+        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
+        /* (crs-W_3) centripetal tensor of link 3 */
+        const real crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t;
+        const real crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t;
         /* (crs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y;
+        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z;
+        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x;
+        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x;
         /* (crs-S_ddot) acceleration of the connection point */
         const real crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
         const real crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
         const real crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
-        const real crs_S_ddot_tip_x = axis_x_crs_axes3_x*crs_S_ddot_x +
+        const real crs_S_ddot_in_axes3_x = axis_x_crs_axes3_x*crs_S_ddot_x +
             axis_x_crs_axes3_y*crs_S_ddot_y + axis_x_crs_axes3_z*crs_S_ddot_z;
-        const real crs_S_ddot_tip_y = axis_y_crs_axes3_in_base_x*crs_S_ddot_x +
-            axis_y_crs_axes3_in_base_y*crs_S_ddot_y + axis_y_crs_axes3_in_base_z*crs_S_ddot_z;
-        const real crs_S_ddot_tip_z = axis_z_crs_axes3_in_base_x*crs_S_ddot_x +
-            axis_z_crs_axes3_in_base_y*crs_S_ddot_y + axis_z_crs_axes3_in_base_z*crs_S_ddot_z;
+        const real crs_S_ddot_in_axes3_y = axis_y_crs_axes3_x*crs_S_ddot_x +
+            axis_y_crs_axes3_y*crs_S_ddot_y + axis_y_crs_axes3_z*crs_S_ddot_z;
+        const real crs_S_ddot_in_axes3_z = axis_z_crs_axes3_x*crs_S_ddot_x +
+            axis_z_crs_axes3_y*crs_S_ddot_y + axis_z_crs_axes3_z*crs_S_ddot_z;
+        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t;
+        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
+        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
+            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
+        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
+        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
+        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
+            crs_bias_t_3*crs_omega_1_t;
+        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
+            crs_bias_t_3*crs_omega_1_in_axes3_x;
+        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
+            crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
+            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3);
         /* (crs-rel) acceleration of the connection point left to the joint accelerations */
-        const real crs_rel_x = crs_S_ddot_tip_x - crs_bias_x;
-        const real crs_rel_y = crs_S_ddot_tip_y - crs_bias_y;
-        const real crs_rel_z = crs_S_ddot_tip_z - crs_bias_z;
+        const real crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x;
+        const real crs_rel_in_axes3_y = crs_S_ddot_in_axes3_y - crs_bias_in_axes3_y;
+        const real crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z;
         /* (crs-qdd_1) acceleration of joint 1 */
-        const real crs_qdd_1 = crs_rel_z*inv_crs_v_1_z;
-        const real crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3);
-        /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real crs_g_r0_z = m->crs_g_r0_z[i];
-        const real crs_acc_3_x = crs_S_ddot_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3;
-        const real crs_acc_3_y = crs_S_ddot_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3;
-        const real crs_acc_3_z = crs_S_ddot_tip_z - crs_g_r1_x;
+        const real crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z;
+        /* (crs-qdd_3) acceleration of joint 3 */
+        const real crs_qdd_3_t = inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x -
+            crs_rel_in_axes3_y*crs_s_3);
         /* (crs-alpha_1) angular acceleration of link 1 */
-        const real crs_alpha_1_t = crs_qdd_1*crs_s_3;
-        const real crs_alpha_1_t_2 = crs_c_3*crs_qdd_1;
+        const real crs_alpha_1_in_axes3_x = crs_qdd_1*crs_s_3;
+        const real crs_alpha_1_t = crs_c_3_t*crs_qdd_1;
         /* (crs-alpha_3) angular acceleration of link 3 */
-        const real crs_alpha_3_x = crs_alpha_1_t + crs_zeta_3_x;
-        const real crs_alpha_3_y = crs_zeta_3_y - crs_alpha_1_t_2;
+        const real crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x;
+        const real crs_alpha_3_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_t;
         /* (crs-B_3) acceleration tensor of link 3 */
-        const real crs_B_3_xy = crs_qdd_3 - crs_W_3_xy;
-        const real crs_B_3_yx = -crs_W_3_xy - crs_qdd_3;
-        const real crs_B_3_zx = -crs_alpha_3_y - crs_zeta_3_y;
-        const real crs_B_3_zy = crs_alpha_3_x + crs_zeta_3_x;
-        /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real crs_J_3_xy = m->crs_J_3_xy[i];
-        const real crs_J_3_xz = m->crs_J_3_xz[i];
-        const real crs_J_3_yz = m->crs_J_3_yz[i];
-        const real crs_Sigma_3_yy = m->crs_Sigma_3_yy[i];
-        const real crs_Sigma_3_zz = m->crs_Sigma_3_zz[i];
-        const real crs_h_3_y = m->crs_h_3_y[i];
-        const real crs_h_3_z = m->crs_h_3_z[i];
-        const real crs_mu_3_x = crs_B_3_yx*crs_J_3_xz + crs_B_3_zy*crs_Sigma_3_yy +
-            crs_J_3_yz*(crs_W_3_t_2 - crs_W_3_t_3) + crs_Sigma_3_zz*crs_alpha_1_t +
-            crs_acc_3_z*crs_h_3_y - crs_B_3_zx*crs_J_3_xy - crs_acc_3_y*crs_h_3_z;
-        const real crs_Sigma_3_xx = m->crs_Sigma_3_xx[i];
-        const real crs_h_3_x = m->crs_h_3_x[i];
-        const real crs_mu_3_y = crs_B_3_zy*crs_J_3_xy + crs_acc_3_x*crs_h_3_z -
-            crs_B_3_xy*crs_J_3_yz - crs_B_3_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t -
-            crs_W_3_t_3) - crs_Sigma_3_zz*crs_alpha_1_t_2 - crs_acc_3_z*crs_h_3_x;
-        const real crs_mu_3_z = crs_B_3_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
-            crs_J_3_xz*crs_alpha_1_t + crs_acc_3_y*crs_h_3_x - crs_B_3_xy*crs_Sigma_3_yy -
-            crs_J_3_yz*crs_alpha_1_t_2 - crs_acc_3_x*crs_h_3_y;
+        const real crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy + crs_qdd_3_t;
+        const real crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy - crs_qdd_3_t;
+        const real crs_B_3_in_axes3_zx = -crs_alpha_3_in_axes3_y - crs_zeta_3_in_axes3_y;
+        const real crs_B_3_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x;
         /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real crs_acc_2_z = crs_rel_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_y -
-            crs_qdd_3*crs_r_1_t;
+        const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
+        const real crs_acc_2_in_axes1_z = crs_rel_in_axes3_x*crs_s_3 - crs_g_in_axes1_z -
+            crs_c_3_t*crs_rel_in_axes3_y - crs_qdd_3_t*crs_r_1_t;
         /* (crs-f_2) inertia force of link 2 less its weight */
         const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_f_2_t = crs_acc_2_z*crs_link2_mass;
+        const real crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass;
+        /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real crs_acc_3_t = m->crs_acc_3_t[i];
+        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
+        const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
+        const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
+        const real crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y -
+            crs_g_in_axes1_z*crs_s_3;
+        const real crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z +
+            crs_g_in_axes1_y*crs_s_3;
+        const real crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_x;
+        /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+        const real crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
+        const real crs_mu_3_t_2 = crs_omega_1_t*crs_omega_1_t;
+        const real crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t;
+        const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
+        const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
+        const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
+        const real crs_Sigma_3_in_axes3_yy = m->crs_Sigma_3_in_axes3_yy[i];
+        const real crs_Sigma_3_in_axes3_zz = m->crs_Sigma_3_in_axes3_zz[i];
+        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
+        const real crs_mu_3_in_axes3_x = crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz +
+            crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_t_2 -
+            crs_mu_3_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
+            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
+            crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z;
+        const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
+        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+        const real crs_mu_3_in_axes3_y = crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy +
+            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz -
+            crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_t -
+            crs_mu_3_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_t -
+            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x;
+        const real crs_mu_3_in_axes3_z = crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+            crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2) +
+            crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x + crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x -
+            crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_t -
+            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y;
         /* (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real crs_J_2_xx = m->crs_J_2_xx[i];
-        const real crs_h_2_y = m->crs_h_2_y[i];
-        const real crs_h_2_z = m->crs_h_2_z[i];
-        const real crs_mu_1_z = crs_J_2_xx*crs_qdd_1 - crs_g_r1_x*crs_h_2_y -
-            crs_g_r1_y*crs_h_2_z;
+        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
+        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
+        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
+        const real crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 -
+            crs_g_in_axes1_x*crs_h_2_in_spec1_y - crs_g_in_axes1_y*crs_h_2_in_spec1_z;
         /* (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real crs_N_1_z = crs_mu_1_z + crs_mu_3_x*crs_s_3 - crs_c_3*crs_mu_3_y;
-        /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real crs_G_t = inv_crs_r_1_t_2*(crs_mu_3_z + crs_f_2_t*crs_r_1_t);
+        const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z + crs_mu_3_in_axes3_x*crs_s_3 -
+            crs_c_3_t*crs_mu_3_in_axes3_y;
         /* (crs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real crs_c_x = crs_alpha_1_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) -
-            crs_B_3_xy*crs_h_3_y - crs_G_t*crs_c_3 - crs_f_2_t*crs_s_3;
-        const real crs_c_y = crs_alpha_1_t*crs_h_3_z + crs_c_3*crs_f_2_t + crs_h_3_y*(crs_W_3_t +
-            crs_W_3_t_3) - crs_B_3_yx*crs_h_3_x - crs_G_t*crs_s_3;
-        const real crs_c_z = crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_zx*crs_h_3_x -
-            crs_B_3_zy*crs_h_3_y - crs_N_1_z*inv_crs_v_1_z;
+        const real crs_c_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z +
+            crs_f_2_in_axes1_z*crs_r_1_t);
+        const real crs_c_in_axes3_x = crs_alpha_1_t*crs_h_3_in_spec3_z +
+            crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) -
+            crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_t -
+            crs_f_2_in_axes1_z*crs_s_3;
+        const real crs_c_in_axes3_y = crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z +
+            crs_c_3_t*crs_f_2_in_axes1_z + crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
+            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t*crs_s_3;
+        const real crs_c_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) -
+            crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y -
+            crs_N_1_in_axes1_z*crs_w_1_in_axes3_z;
         /* (crs-c_true) leg force on the platform without actuation, the last link's mass included */
         const real crs_link3_mass = m->crs_link3_mass[i];
-        const real crs_c_true_x = crs_c_x - crs_acc_3_x*crs_link3_mass;
-        const real crs_c_true_y = crs_c_y - crs_acc_3_y*crs_link3_mass;
-        const real crs_c_true_z = crs_c_z - crs_acc_3_z*crs_link3_mass;
-        const real crs_c_true_in_base_x = axis_x_crs_axes3_x*crs_c_true_x +
-            axis_y_crs_axes3_in_base_x*crs_c_true_y + axis_z_crs_axes3_in_base_x*crs_c_true_z;
-        const real crs_c_true_in_base_y = axis_x_crs_axes3_y*crs_c_true_x +
-            axis_y_crs_axes3_in_base_y*crs_c_true_y + axis_z_crs_axes3_in_base_y*crs_c_true_z;
-        const real crs_c_true_in_base_z = axis_x_crs_axes3_z*crs_c_true_x +
-            axis_y_crs_axes3_in_base_z*crs_c_true_y + axis_z_crs_axes3_in_base_z*crs_c_true_z;
-        o[0*count + k] = crs_c_true_in_base_x;
-        o[1*count + k] = crs_c_true_in_base_y;
-        o[2*count + k] = crs_c_true_in_base_z;
-        o[3*count + k] = crs_w_1_t_3;
-        o[4*count + k] = crs_w_1_t_4;
-        o[5*count + k] = crs_w_1_t_5;
-        o[6*count + k] = crs_w_2_in_base_x;
-        o[7*count + k] = crs_w_2_in_base_y;
-        o[8*count + k] = crs_w_2_in_base_z;
+        const real crs_c_true_in_axes3_x = crs_c_in_axes3_x - crs_acc_3_in_axes3_x*crs_link3_mass;
+        const real crs_c_true_in_axes3_y = crs_c_in_axes3_y - crs_acc_3_in_axes3_y*crs_link3_mass;
+        const real crs_c_true_in_axes3_z = crs_c_in_axes3_z - crs_acc_3_in_axes3_z*crs_link3_mass;
+        const real crs_c_true_x = axis_x_crs_axes3_x*crs_c_true_in_axes3_x +
+            axis_y_crs_axes3_x*crs_c_true_in_axes3_y + axis_z_crs_axes3_x*crs_c_true_in_axes3_z;
+        const real crs_c_true_y = axis_x_crs_axes3_y*crs_c_true_in_axes3_x +
+            axis_y_crs_axes3_y*crs_c_true_in_axes3_y + axis_z_crs_axes3_y*crs_c_true_in_axes3_z;
+        const real crs_c_true_z = axis_x_crs_axes3_z*crs_c_true_in_axes3_x +
+            axis_y_crs_axes3_z*crs_c_true_in_axes3_y + axis_z_crs_axes3_z*crs_c_true_in_axes3_z;
+        /* (crs-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = crs_c_true_x;
+        o[1*count + k] = crs_c_true_y;
+        o[2*count + k] = crs_c_true_z;
+        /* (crs-w_1) reciprocal vector 1 */
+        o[3*count + k] = crs_w_1_x;
+        o[4*count + k] = crs_w_1_y;
+        o[5*count + k] = crs_w_1_z;
+        /* (crs-w_2) reciprocal vector 2 */
+        o[6*count + k] = crs_w_2_x;
+        o[7*count + k] = crs_w_2_y;
+        o[8*count + k] = crs_w_2_z;
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[10*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[9*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -4937,13 +5074,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -5009,55 +5148,59 @@ INLINE void potential_legs_crs(const prepared *m, size_t w, size_t leg, size_t l
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (potential) potential energy */
-        const real crs_b_r0_x = m->crs_b_r0_x[i];
-        const real crs_b_r0_y = m->crs_b_r0_y[i];
-        const real crs_b_r0_z = m->crs_b_r0_z[i];
-        const real crs_g_r0_x = m->crs_g_r0_x[i];
-        const real crs_g_r0_y = m->crs_g_r0_y[i];
-        const real crs_g_r0_z = m->crs_g_r0_z[i];
-        const real crs_h_2_x = m->crs_h_2_x[i];
-        const real crs_h_2_y = m->crs_h_2_y[i];
-        const real crs_h_2_z = m->crs_h_2_z[i];
-        const real crs_h_3_x = m->crs_h_3_x[i];
-        const real crs_h_3_y = m->crs_h_3_y[i];
-        const real crs_h_3_z = m->crs_h_3_z[i];
+        const real crs_acc_3_t = m->crs_acc_3_t[i];
+        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
+        const real crs_b_in_axes1_z = m->crs_b_in_axes1_z[i];
+        const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
+        const real crs_h_2_in_spec1_x = m->crs_h_2_in_spec1_x[i];
+        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
+        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
+        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
         const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_potential_t = crs_g_r0_z*(crs_h_2_x + crs_h_3_x*crs_s_3 +
-            crs_link2_mass*(crs_b_r0_z + crs_q_2) - crs_c_3*crs_h_3_y) + (crs_g_r0_y*crs_s_1 -
-            crs_c_1*crs_g_r0_x)*(crs_h_2_z + crs_h_3_z + crs_link2_mass*(crs_b_r0_y*crs_s_1 -
-            crs_b_r0_x*crs_c_1)) + (-crs_c_1*crs_g_r0_y -
-            crs_g_r0_x*crs_s_1)*(crs_link2_mass*(-crs_b_r0_x*crs_s_1 - crs_b_r0_y*crs_c_1) -
-            crs_h_2_y - crs_c_3*crs_h_3_x - crs_h_3_y*crs_s_3);
-        terms[0*count + k] = add ? terms[0*count + k] + crs_potential_t : crs_potential_t;  /* total_crs */
+        const real crs_potential_t = m->crs_potential_t[i];
+        const real crs_potential_t_2 = m->crs_potential_t_2[i];
+        const real crs_potential_t_3 = crs_g_in_axes1_z*(crs_h_2_in_spec1_x +
+            crs_h_3_in_spec3_x*crs_s_3 + crs_link2_mass*(crs_b_in_axes1_z + crs_q_2) -
+            crs_c_3_t*crs_h_3_in_spec3_y) + (crs_acc_3_t*crs_c_1 +
+            crs_acc_3_t_2*crs_s_1)*(crs_h_2_in_spec1_z + crs_h_3_in_spec3_z +
+            crs_link2_mass*(crs_c_1*crs_potential_t + crs_potential_t_2*crs_s_1)) +
+            (crs_acc_3_t_2*crs_c_1 -
+            crs_acc_3_t*crs_s_1)*(crs_link2_mass*(crs_c_1*crs_potential_t_2 -
+            crs_potential_t*crs_s_1) - crs_h_2_in_spec1_y - crs_c_3_t*crs_h_3_in_spec3_x -
+            crs_h_3_in_spec3_y*crs_s_3);
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + crs_potential_t_3 : crs_potential_t_3;  /* potential_t_2 */
         const real crs_size_t_2 = m->crs_size_t_2[i];
         o[1*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2);
         o[0*count + k] = UNLESS(crs_disc_2 >= 0);
@@ -5077,8 +5220,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_crs = sums[0*w + k];
-        const real potential_ = -potential_t - total_crs;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5148,6 +5292,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -5168,27 +5313,27 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t leg, size_t l
         const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_in_base_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
             R_xz*crs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real crs_q_in_base_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
             R_yz*crs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real crs_q_in_base_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
             R_zz*crs_platform_point_z;
         const real crs_base_point_x = m->crs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x;
+        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
         const real crs_base_point_y = m->crs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y;
+        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
         const real crs_base_point_z = m->crs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z;
+        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
         /* (crs-px_1) component along the reference direction */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
@@ -5206,130 +5351,127 @@ INLINE void condition_legs_crs(const prepared *m, size_t w, size_t leg, size_t l
         /* (crs-root_1) root, with the sign of the branch */
         const real crs_branch_1 = m->crs_branch_1[i];
         const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_crs_rho2_1 = 1/crs_rho2_1;
+        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
         /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_t = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
             crs_S_z*crs_base_frame_zx;
         /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
         const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x;
+        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
         /* (crs-disc_2) discriminant of the distance equation */
         const real crs_size_t = m->crs_size_t[i];
         const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
         /* (crs-q_2) displacement of joint 2 */
         const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_z + crs_branch_2*root(crs_disc_2);
+        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
         /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2;
+        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t;
+        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3*crs_platform_joint_offset_x;
-        const real crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2;
+        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
+        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
+        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
         /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_z = crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) +
-            crs_s_3*(crs_r_1_t*crs_s_3 - crs_c_3*crs_r_1_z);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
+        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
+            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
+            crs_c_3_t*crs_r_1_in_axes1_z);
         /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 -
-            crs_base_frame_xy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 -
-            crs_base_frame_yy*crs_c_1;
-        const real axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 -
-            crs_base_frame_zy*crs_c_1;
-        const real crs_w_1_t = crs_s_1*crs_s_3;
-        const real crs_w_1_t_2 = crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_in_base_x = crs_base_frame_xy*crs_w_1_t +
-            crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_y = crs_base_frame_yy*crs_w_1_t +
-            crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3;
-        const real axis_y_crs_axes3_in_base_z = crs_base_frame_zy*crs_w_1_t +
-            crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3;
-        const real inv_crs_v_1_z = 1/crs_v_1_z;
+        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
+        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
+        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
+        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
+        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
+        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
         /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_r_1_t/crs_r_1_t_2;
-        const real crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t;
-        const real crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3;
-        /* (crs-w_1) reciprocal vector 1 */
-        const real crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z;
-        const real crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z;
-        const real crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z;
-        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        const real crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4;
-        const real crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5;
-        const real crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_in_base_x = axis_y_crs_axes3_in_base_x*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y);
-        const real crs_w_2_in_base_y = axis_y_crs_axes3_in_base_y*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z);
-        const real crs_w_2_in_base_z = axis_y_crs_axes3_in_base_z*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x);
-        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        const real crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z -
-            crs_q_in_base_z*crs_w_2_in_base_y;
-        const real crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x -
-            crs_q_in_base_x*crs_w_2_in_base_z;
-        const real crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y -
-            crs_q_in_base_y*crs_w_2_in_base_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real crs_spread_t = b_c_x - crs_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real crs_spread_t_2 = b_c_y - crs_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real crs_spread_t_3 = b_c_z - crs_platform_point_z;
-        const real crs_spread_t_4 = crs_spread_t*crs_spread_t + crs_spread_t_2*crs_spread_t_2 +
-            crs_spread_t_3*crs_spread_t_3;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_pivot_size = magnitude(crs_rho2_1);
-        /* (crs-w_1) reciprocal vector 1 */
-        const real crs_pivot_size_2 = magnitude(crs_v_1_z);
-        const real crs_pivot_size_3 = magnitude(crs_r_1_t_2);
+        const real crs_w_2_t = crs_s_1*crs_s_3;
+        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
+        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
+            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
+        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
+            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
+        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
+            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
+        const real crs_w_2_t_3 = crs_r_1_t/crs_d_4_in_axes1_z;
+        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
+        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
+        const real crs_w_2_x = axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y);
+        const real crs_w_2_y = axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z);
+        const real crs_w_2_z = axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x);
         /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real crs_pivot_size = magnitude(crs_rho2_1);
+        const real crs_pivot_size_2 = magnitude(crs_v_1_in_axes3_z);
+        const real crs_pivot_size_3 = magnitude(crs_d_4_in_axes1_z);
         const real inv_crs_size = m->inv_crs_size[i];
         const real inv_crs_size_t_2 = m->inv_crs_size_t_2[i];
         const real crs_least_pivots = lesser(lesser(root(crs_pivot_size*inv_crs_size_t_2),
             crs_pivot_size_2*inv_crs_size), crs_pivot_size_3*inv_crs_size);
-        terms[0*count + k] = add ? terms[0*count + k] + crs_spread_t_4 : crs_spread_t_4;  /* total_crs */
-        o[0*count + k] = crs_w_1_t_3;
-        o[1*count + k] = crs_w_1_t_4;
-        o[2*count + k] = crs_w_1_t_5;
+        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
+        const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
+        const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
+        const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
+        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
+        const real crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y;
+        const real crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z;
+        const real crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real crs_spread_t = b_c_in_platform_x - crs_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real crs_spread_t_2 = b_c_in_platform_y - crs_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real crs_spread_t_3 = b_c_in_platform_z - crs_platform_point_z;
+        const real crs_spread_t_4 = crs_spread_t*crs_spread_t + crs_spread_t_2*crs_spread_t_2 +
+            crs_spread_t_3*crs_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + crs_spread_t_4 : crs_spread_t_4;  /* spread_crs */
+        /* (crs-w_1) reciprocal vector 1 */
+        o[0*count + k] = crs_w_1_x;
+        o[1*count + k] = crs_w_1_y;
+        o[2*count + k] = crs_w_1_z;
+        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = crs_H_a_1_x;
         o[4*count + k] = crs_H_a_1_y;
         o[5*count + k] = crs_H_a_1_z;
-        o[6*count + k] = crs_w_2_in_base_x;
-        o[7*count + k] = crs_w_2_in_base_y;
-        o[8*count + k] = crs_w_2_in_base_z;
+        /* (crs-w_2) reciprocal vector 2 */
+        o[6*count + k] = crs_w_2_x;
+        o[7*count + k] = crs_w_2_y;
+        o[8*count + k] = crs_w_2_z;
+        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = crs_H_a_2_x;
         o[10*count + k] = crs_H_a_2_y;
         o[11*count + k] = crs_H_a_2_z;
+        /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[12*count + k] = crs_least_pivots;
         o[13*count + k] = crs_disc_2;
-        o[16*count + k] = ((crs_w_1_t_3 + (crs_w_1_t_4 + crs_w_1_t_5)) + ((crs_H_a_1_x +
-            crs_H_a_1_y) + (crs_H_a_1_z + crs_w_2_in_base_x))) + ((crs_w_2_in_base_y +
-            (crs_w_2_in_base_z + crs_H_a_2_x)) + ((crs_H_a_2_y + crs_H_a_2_z) + (crs_least_pivots
-            + crs_disc_2)));
+        o[16*count + k] = ((crs_w_1_x + (crs_w_1_y + crs_w_1_z)) + ((crs_H_a_1_x + crs_H_a_1_y) +
+            (crs_H_a_1_z + crs_w_2_x))) + ((crs_w_2_y + (crs_w_2_z + crs_H_a_2_x)) + ((crs_H_a_2_y
+            + crs_H_a_2_z) + (crs_least_pivots + crs_disc_2)));
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
         o[15*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_z) > TOLERANCE*crs_size) + UNLESS(magnitude(-crs_r_1_t_2) >
-            TOLERANCE*crs_size);
+            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
         o[14*count + k] = UNLESS(crs_disc_2 >= 0);
     }
 }
@@ -5363,9 +5505,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_crs = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_crs = sums[0*w + k];
-        const real spread_ = spread_t*root(total_crs);
+        const real spread_ = root(spread_crs)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

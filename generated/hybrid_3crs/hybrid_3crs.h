@@ -99,20 +99,25 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type crs; copies of the first fill up */
-    hybrid_3crs_real crs_J_2_xx[4], crs_J_3_xx[4], crs_J_3_xy[4], crs_J_3_xz[4], crs_J_3_yy[4],
-            crs_J_3_yz[4], crs_J_3_zz[4], crs_Sigma_3_xx[4], crs_Sigma_3_yy[4], crs_Sigma_3_zz[4],
-            crs_b_r0_x[4], crs_b_r0_y[4], crs_b_r0_z[4], crs_base_frame_xx[4], crs_base_frame_xy[4],
-            crs_base_frame_xz[4], crs_base_frame_yx[4], crs_base_frame_yy[4], crs_base_frame_yz[4],
-            crs_base_frame_zx[4], crs_base_frame_zy[4], crs_base_frame_zz[4], crs_base_point_x[4],
-            crs_base_point_y[4], crs_base_point_z[4], crs_branch_1[4], crs_branch_2[4], crs_g_r0_x[4],
-            crs_g_r0_y[4], crs_g_r0_z[4], crs_h_2_x[4], crs_h_2_y[4], crs_h_2_z[4], crs_h_3_x[4],
-            crs_h_3_y[4], crs_h_3_z[4], crs_joint3_offset_x[4], crs_link2_mass[4], crs_link3_mass[4],
-            crs_platform_joint_offset_x[4], crs_platform_point_x[4], crs_platform_point_y[4],
-            crs_platform_point_z[4], crs_size[4], crs_size_t[4], crs_size_t_2[4], inv_crs_size[4],
+    hybrid_3crs_real crs_J_2_in_spec1_xx[4], crs_J_3_in_spec3_xx[4], crs_J_3_in_spec3_xy[4],
+            crs_J_3_in_spec3_xz[4], crs_J_3_in_spec3_yy[4], crs_J_3_in_spec3_yz[4],
+            crs_J_3_in_spec3_zz[4], crs_Sigma_3_in_axes3_xx[4], crs_Sigma_3_in_axes3_yy[4],
+            crs_Sigma_3_in_axes3_zz[4], crs_acc_3_t[4], crs_acc_3_t_2[4], crs_b_in_axes1_z[4],
+            crs_base_frame_xx[4], crs_base_frame_xy[4], crs_base_frame_xz[4], crs_base_frame_yx[4],
+            crs_base_frame_yy[4], crs_base_frame_yz[4], crs_base_frame_zx[4], crs_base_frame_zy[4],
+            crs_base_frame_zz[4], crs_base_point_x[4], crs_base_point_y[4], crs_base_point_z[4],
+            crs_branch_1[4], crs_branch_2[4], crs_g_in_axes1_z[4], crs_h_2_in_spec1_x[4],
+            crs_h_2_in_spec1_y[4], crs_h_2_in_spec1_z[4], crs_h_3_in_spec3_x[4],
+            crs_h_3_in_spec3_y[4], crs_h_3_in_spec3_z[4], crs_joint3_offset_x[4], crs_link2_mass[4],
+            crs_link3_mass[4], crs_platform_joint_offset_x[4], crs_platform_point_x[4],
+            crs_platform_point_y[4], crs_platform_point_z[4], crs_potential_t[4],
+            crs_potential_t_2[4], crs_size[4], crs_size_t[4], crs_size_t_2[4], inv_crs_size[4],
             inv_crs_size_t[4], inv_crs_size_t_2[4];
-    hybrid_3crs_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
+    hybrid_3crs_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hybrid_3crs_model;
 
 extern const hybrid_3crs_params hybrid_3crs_default_params;

@@ -352,7 +352,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -545,38 +545,62 @@ def _prepare(p):
     crs_size_t = crs_platform_joint_offset_x*crs_platform_joint_offset_x
     crs_size_t_2 = 0.30250000000000005 + crs_size_t
     crs_size = sqrt(crs_size_t_2)
-    # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-    inv_crs_size_t = 1.0/crs_size_t
-    # (crs-rho_tip_3) connection point to the centre of mass of link 3
-    crs_rho_tip_3_x = crs_link3_centre_of_mass_x - crs_platform_joint_offset_x
-    # (crs-h_3) first moment of link 3 about the connection point
-    crs_h_3_x = crs_link3_mass*crs_rho_tip_3_x
-    crs_h_3_y = crs_link3_centre_of_mass_y*crs_link3_mass
-    crs_h_3_z = crs_link3_centre_of_mass_z*crs_link3_mass
-    # (crs-J_3) inertia tensor of link 3 about the connection point
-    crs_J_3_t = crs_rho_tip_3_x*crs_rho_tip_3_x
-    crs_J_3_t_2 = crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_y
-    crs_J_3_t_3 = crs_link3_centre_of_mass_z*crs_link3_centre_of_mass_z
-    crs_J_3_t_4 = crs_J_3_t + crs_J_3_t_2 + crs_J_3_t_3
-    crs_J_3_xx = crs_link3_inertia_xx - crs_link3_mass*(crs_J_3_t - crs_J_3_t_4)
-    crs_J_3_xy = crs_link3_inertia_xy - crs_link3_centre_of_mass_y*crs_link3_mass*crs_rho_tip_3_x
-    crs_J_3_xz = crs_link3_inertia_xz - crs_link3_centre_of_mass_z*crs_link3_mass*crs_rho_tip_3_x
-    crs_J_3_yy = crs_link3_inertia_yy - crs_link3_mass*(crs_J_3_t_2 - crs_J_3_t_4)
-    crs_J_3_yz = (
-    crs_link3_inertia_yz - crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass
-    )
-    crs_J_3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 - crs_J_3_t_4)
     # (crs-h_2) first moment of link 2 about the origin of link 2
-    crs_h_2_x = crs_link2_centre_of_mass_x*crs_link2_mass
-    crs_h_2_y = crs_link2_centre_of_mass_y*crs_link2_mass
-    crs_h_2_z = crs_link2_centre_of_mass_z*crs_link2_mass
+    crs_h_2_in_spec1_x = crs_link2_centre_of_mass_x*crs_link2_mass
+    crs_h_2_in_spec1_y = crs_link2_centre_of_mass_y*crs_link2_mass
+    crs_h_2_in_spec1_z = crs_link2_centre_of_mass_z*crs_link2_mass
     # (crs-J_2) inertia tensor of link 2 about the origin of link 2
     crs_J_2_t = crs_link2_centre_of_mass_x*crs_link2_centre_of_mass_x
     crs_J_2_t_2 = (
     crs_J_2_t + crs_link2_centre_of_mass_y*crs_link2_centre_of_mass_y +
         crs_link2_centre_of_mass_z*crs_link2_centre_of_mass_z
     )
-    crs_J_2_xx = crs_link2_inertia_xx - crs_link2_mass*(crs_J_2_t - crs_J_2_t_2)
+    crs_J_2_in_spec1_xx = crs_link2_inertia_xx - crs_link2_mass*(crs_J_2_t - crs_J_2_t_2)
+    # (crs-rho_tip_3) connection point to the centre of mass of link 3
+    crs_rho_tip_3_in_spec3_x = crs_link3_centre_of_mass_x - crs_platform_joint_offset_x
+    # (crs-h_3) first moment of link 3 about the connection point
+    crs_h_3_in_spec3_x = crs_link3_mass*crs_rho_tip_3_in_spec3_x
+    crs_h_3_in_spec3_y = crs_link3_centre_of_mass_y*crs_link3_mass
+    crs_h_3_in_spec3_z = crs_link3_centre_of_mass_z*crs_link3_mass
+    # (crs-J_3) inertia tensor of link 3 about the connection point
+    crs_J_3_t = crs_rho_tip_3_in_spec3_x*crs_rho_tip_3_in_spec3_x
+    crs_J_3_t_2 = crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_y
+    crs_J_3_t_3 = crs_link3_centre_of_mass_z*crs_link3_centre_of_mass_z
+    crs_J_3_t_4 = crs_J_3_t + crs_J_3_t_2 + crs_J_3_t_3
+    crs_J_3_in_spec3_xx = crs_link3_inertia_xx - crs_link3_mass*(crs_J_3_t - crs_J_3_t_4)
+    crs_J_3_in_spec3_xy = (
+    crs_link3_inertia_xy - crs_link3_centre_of_mass_y*crs_link3_mass*crs_rho_tip_3_in_spec3_x
+    )
+    crs_J_3_in_spec3_xz = (
+    crs_link3_inertia_xz - crs_link3_centre_of_mass_z*crs_link3_mass*crs_rho_tip_3_in_spec3_x
+    )
+    crs_J_3_in_spec3_yy = crs_link3_inertia_yy - crs_link3_mass*(crs_J_3_t_2 - crs_J_3_t_4)
+    crs_J_3_in_spec3_yz = (
+    crs_link3_inertia_yz - crs_link3_centre_of_mass_y*crs_link3_centre_of_mass_z*crs_link3_mass
+    )
+    crs_J_3_in_spec3_zz = crs_link3_inertia_zz - crs_link3_mass*(crs_J_3_t_3 - crs_J_3_t_4)
+    # (crs-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_crs_size_t = 1.0/crs_size_t
+    # (crs-acc_2) acceleration of the reference point of link 2, less gravity
+    crs_g_in_axes1_z = (
+    crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y + crs_base_frame_zx*gravity_z
+    )
+    # (crs-acc_3) acceleration of the reference point of link 3, less gravity
+    crs_acc_3_t = (
+    crs_base_frame_xy*gravity_x + crs_base_frame_yy*gravity_y + crs_base_frame_zy*gravity_z
+    )
+    crs_acc_3_t_2 = (
+    crs_base_frame_xz*gravity_x + crs_base_frame_yz*gravity_y + crs_base_frame_zz*gravity_z
+    )
+    # (crs-trace_J_3) half the trace of that inertia tensor
+    crs_trace_J_3 = 0.5*crs_J_3_in_spec3_xx + 0.5*crs_J_3_in_spec3_yy + 0.5*crs_J_3_in_spec3_zz
+    # (crs-Sigma_3) second moment of mass of the links that turn with link 3
+    crs_Sigma_3_in_axes3_xx = crs_trace_J_3 - crs_J_3_in_spec3_xx
+    crs_Sigma_3_in_axes3_yy = crs_trace_J_3 - crs_J_3_in_spec3_yy
+    crs_Sigma_3_in_axes3_zz = crs_trace_J_3 - crs_J_3_in_spec3_zz
+    # (crs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_crs_size_t_2 = 1.0/crs_size_t_2
+    inv_crs_size = 1.0/crs_size
     # (h_star) first moment about the platform origin
     crs_h_star_t = crs_link3_mass*crs_platform_point_x
     crs_h_star_t_2 = crs_link3_mass*crs_platform_point_y
@@ -592,129 +616,117 @@ def _prepare(p):
     crs_J_star_t_8 = crs_link3_mass*(crs_J_star_t_2 - crs_J_star_t_4)
     crs_J_star_t_9 = crs_link3_mass*crs_platform_point_y*crs_platform_point_z
     crs_J_star_t_10 = crs_link3_mass*(crs_J_star_t_3 - crs_J_star_t_4)
-    # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    crs_g_r0_x = (
-    crs_base_frame_xy*gravity_x + crs_base_frame_yy*gravity_y + crs_base_frame_zy*gravity_z
-    )
-    crs_g_r0_y = (
-    crs_base_frame_xz*gravity_x + crs_base_frame_yz*gravity_y + crs_base_frame_zz*gravity_z
-    )
-    crs_g_r0_z = (
-    crs_base_frame_xx*gravity_x + crs_base_frame_yx*gravity_y + crs_base_frame_zx*gravity_z
-    )
-    # (crs-trace_J_3) half the trace of that inertia tensor
-    crs_trace_J_3 = 0.5*crs_J_3_xx + 0.5*crs_J_3_yy + 0.5*crs_J_3_zz
-    # (crs-Sigma_3) second moment of mass of the links that turn with link 3
-    crs_Sigma_3_xx = crs_trace_J_3 - crs_J_3_xx
-    crs_Sigma_3_yy = crs_trace_J_3 - crs_J_3_yy
-    crs_Sigma_3_zz = crs_trace_J_3 - crs_J_3_zz
     # (potential) potential energy
-    crs_b_r0_x = (
+    crs_potential_t = (
     crs_base_frame_xy*crs_base_point_x + crs_base_frame_yy*crs_base_point_y +
         crs_base_frame_zy*crs_base_point_z
     )
-    crs_b_r0_y = (
+    crs_potential_t_2 = (
     crs_base_frame_xz*crs_base_point_x + crs_base_frame_yz*crs_base_point_y +
         crs_base_frame_zz*crs_base_point_z
     )
-    crs_b_r0_z = (
+    crs_b_in_axes1_z = (
     crs_base_frame_xx*crs_base_point_x + crs_base_frame_yx*crs_base_point_y +
         crs_base_frame_zx*crs_base_point_z
     )
-    # (crs-rho2_1) squared amplitude
-    inv_crs_size_t_2 = 1.0/crs_size_t_2
-    # (crs-w_1) reciprocal vector 1
-    inv_crs_size = 1.0/crs_size
-    total_crs = np.sum(np.broadcast_to(crs_link3_mass, _crs))
-    total_crs_x = np.sum(np.broadcast_to(crs_h_star_t, _crs))
-    total_crs_y = np.sum(np.broadcast_to(crs_h_star_t_2, _crs))
-    total_crs_z = np.sum(np.broadcast_to(crs_h_star_t_3, _crs))
-    total_crs_xx = np.sum(np.broadcast_to(crs_J_star_t_5, _crs))
-    total_crs_xy = np.sum(np.broadcast_to(crs_J_star_t_6, _crs))
-    total_crs_xz = np.sum(np.broadcast_to(crs_J_star_t_7, _crs))
-    total_crs_yy = np.sum(np.broadcast_to(crs_J_star_t_8, _crs))
-    total_crs_yz = np.sum(np.broadcast_to(crs_J_star_t_9, _crs))
-    total_crs_zz = np.sum(np.broadcast_to(crs_J_star_t_10, _crs))
-    total_crs_x_2 = np.sum(np.broadcast_to(crs_platform_point_x, _crs))
-    total_crs_y_2 = np.sum(np.broadcast_to(crs_platform_point_y, _crs))
-    total_crs_z_2 = np.sum(np.broadcast_to(crs_platform_point_z, _crs))
-    total_crs_2 = np.sum(np.broadcast_to(crs_size_t_2, _crs))
+    m_star_crs = np.sum(np.broadcast_to(crs_link3_mass, _crs))
+    h_star_crs_in_platform_x = np.sum(np.broadcast_to(crs_h_star_t, _crs))
+    h_star_crs_in_platform_y = np.sum(np.broadcast_to(crs_h_star_t_2, _crs))
+    h_star_crs_in_platform_z = np.sum(np.broadcast_to(crs_h_star_t_3, _crs))
+    J_star_crs_in_platform_xx = np.sum(np.broadcast_to(-crs_J_star_t_5, _crs))
+    J_star_crs_in_platform_xy = np.sum(np.broadcast_to(-crs_J_star_t_6, _crs))
+    J_star_crs_in_platform_xz = np.sum(np.broadcast_to(-crs_J_star_t_7, _crs))
+    J_star_crs_in_platform_yy = np.sum(np.broadcast_to(-crs_J_star_t_8, _crs))
+    J_star_crs_in_platform_yz = np.sum(np.broadcast_to(-crs_J_star_t_9, _crs))
+    J_star_crs_in_platform_zz = np.sum(np.broadcast_to(-crs_J_star_t_10, _crs))
+    b_c_crs_in_platform_x = np.sum(np.broadcast_to(crs_platform_point_x, _crs))
+    b_c_crs_in_platform_y = np.sum(np.broadcast_to(crs_platform_point_y, _crs))
+    b_c_crs_in_platform_z = np.sum(np.broadcast_to(crs_platform_point_z, _crs))
+    legs_size_crs = np.sum(np.broadcast_to(crs_size_t_2, _crs))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_crs
+    m_star = m_star_crs + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_crs_x
-    h_star_y = h_star_t_2 + total_crs_y
-    h_star_z = h_star_t_3 + total_crs_z
+    h_star_in_platform_x = h_star_crs_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_crs_in_platform_y + h_star_t_2
+    h_star_in_platform_z = h_star_crs_in_platform_z + h_star_t_3
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_crs_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_crs_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_crs_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_crs_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_crs_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_crs_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_crs_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_crs_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_crs_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_crs_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_crs_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_crs_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_crs_x_2
-    b_c_y = 0.3333333333333333*total_crs_y_2
-    b_c_z = 0.3333333333333333*total_crs_z_2
+    b_c_in_platform_x = 0.3333333333333333*b_c_crs_in_platform_x
+    b_c_in_platform_y = 0.3333333333333333*b_c_crs_in_platform_y
+    b_c_in_platform_z = 0.3333333333333333*b_c_crs_in_platform_z
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_crs_2)
+    legs_size = sqrt(legs_size_crs)*spread_t
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_crs,
-        (crs_J_2_xx, crs_J_3_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yy, crs_J_3_yz, crs_J_3_zz,
-                    crs_Sigma_3_xx, crs_Sigma_3_yy, crs_Sigma_3_zz, crs_base_frame_xx,
-                    crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy,
-                    crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz,
-                    crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
-                    crs_branch_2, crs_g_r0_x, crs_g_r0_y, crs_g_r0_z, crs_h_2_y, crs_h_2_z,
-                    crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x, crs_link2_mass,
+        (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
+                    crs_J_3_in_spec3_yy, crs_J_3_in_spec3_yz, crs_J_3_in_spec3_zz,
+                    crs_Sigma_3_in_axes3_xx, crs_Sigma_3_in_axes3_yy, crs_Sigma_3_in_axes3_zz,
+                    crs_acc_3_t, crs_acc_3_t_2, crs_base_frame_xx, crs_base_frame_xy,
+                    crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
+                    crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
+                    crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2,
+                    crs_g_in_axes1_z, crs_h_2_in_spec1_y, crs_h_2_in_spec1_z, crs_h_3_in_spec3_x,
+                    crs_h_3_in_spec3_y, crs_h_3_in_spec3_z, crs_joint3_offset_x, crs_link2_mass,
                     crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
                     crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_crs,
-        (crs_J_2_xx, crs_J_3_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yy, crs_J_3_yz, crs_J_3_zz,
+        (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
+                    crs_J_3_in_spec3_yy, crs_J_3_in_spec3_yz, crs_J_3_in_spec3_zz,
                     crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
                     crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
                     crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z,
-                    crs_branch_1, crs_branch_2, crs_h_3_x, crs_h_3_y, crs_h_3_z,
-                    crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
-                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
-                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
+                    crs_branch_1, crs_branch_2, crs_h_3_in_spec3_x, crs_h_3_in_spec3_y,
+                    crs_h_3_in_spec3_z, crs_joint3_offset_x, crs_link2_mass,
+                    crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
+                    crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_crs,
-        (crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
-                    crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
-                    crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
-                    crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
-                    crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y,
-                    crs_g_r0_z, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z,
-                    crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
-                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
-                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
+        (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
+                    crs_Sigma_3_in_axes3_xx, crs_Sigma_3_in_axes3_yy, crs_Sigma_3_in_axes3_zz,
+                    crs_acc_3_t, crs_acc_3_t_2, crs_base_frame_xx, crs_base_frame_xy,
+                    crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
+                    crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
+                    crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2,
+                    crs_g_in_axes1_z, crs_h_2_in_spec1_y, crs_h_2_in_spec1_z, crs_h_3_in_spec3_x,
+                    crs_h_3_in_spec3_y, crs_h_3_in_spec3_z, crs_joint3_offset_x, crs_link2_mass,
+                    crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
+                    crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
@@ -732,19 +744,22 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_crs,
-        (crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
-                    crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
-                    crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
-                    crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
-                    crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y,
-                    crs_g_r0_z, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z,
-                    crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
-                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
-                    crs_size_t, crs_size_t_2, inv_crs_size_t,),
+        (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
+                    crs_Sigma_3_in_axes3_xx, crs_Sigma_3_in_axes3_yy, crs_Sigma_3_in_axes3_zz,
+                    crs_acc_3_t, crs_acc_3_t_2, crs_base_frame_xx, crs_base_frame_xy,
+                    crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
+                    crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
+                    crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2,
+                    crs_g_in_axes1_z, crs_h_2_in_spec1_y, crs_h_2_in_spec1_z, crs_h_3_in_spec3_x,
+                    crs_h_3_in_spec3_y, crs_h_3_in_spec3_z, crs_joint3_offset_x, crs_link2_mass,
+                    crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
+                    crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
@@ -791,35 +806,40 @@ def _prepare(p):
         (),
             (
                 (_crs,
-        (crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
-                    crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
-                    crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
-                    crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
-                    crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y,
-                    crs_g_r0_z, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z,
-                    crs_joint3_offset_x, crs_link2_mass, crs_link3_mass,
-                    crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
-                    crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,),
-                ),
-            ),
-        ),
-        "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
-            (
-                (_crs,
-        (crs_b_r0_x, crs_b_r0_y, crs_b_r0_z, crs_base_frame_xx, crs_base_frame_xy,
+        (crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
+                    crs_Sigma_3_in_axes3_xx, crs_Sigma_3_in_axes3_yy, crs_Sigma_3_in_axes3_zz,
+                    crs_acc_3_t, crs_acc_3_t_2, crs_base_frame_xx, crs_base_frame_xy,
                     crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
                     crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
-                    crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x,
-                    crs_g_r0_y, crs_g_r0_z, crs_h_2_x, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y,
-                    crs_h_3_z, crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
-                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size_t,
+                    crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2,
+                    crs_g_in_axes1_z, crs_h_2_in_spec1_y, crs_h_2_in_spec1_z, crs_h_3_in_spec3_x,
+                    crs_h_3_in_spec3_y, crs_h_3_in_spec3_z, crs_joint3_offset_x, crs_link2_mass,
+                    crs_link3_mass, crs_platform_joint_offset_x, crs_platform_point_x,
+                    crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t,
                     crs_size_t_2, inv_crs_size_t,),
                 ),
             ),
         ),
+        "potential": (
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
+            (
+                (_crs,
+        (crs_acc_3_t, crs_acc_3_t_2, crs_b_in_axes1_z, crs_base_frame_xx, crs_base_frame_xy,
+                    crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
+                    crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
+                    crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2,
+                    crs_g_in_axes1_z, crs_h_2_in_spec1_x, crs_h_2_in_spec1_y, crs_h_2_in_spec1_z,
+                    crs_h_3_in_spec3_x, crs_h_3_in_spec3_y, crs_h_3_in_spec3_z,
+                    crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+                    crs_platform_point_x, crs_platform_point_y, crs_platform_point_z,
+                    crs_potential_t, crs_potential_t_2, crs_size_t, crs_size_t_2,
+                    inv_crs_size_t,),
+                ),
+            ),
+        ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_crs,
         (crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
@@ -1329,9 +1349,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1386,74 +1407,94 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        crs_J_2_xx, crs_J_3_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yy, crs_J_3_yz, crs_J_3_zz,
-            crs_Sigma_3_xx, crs_Sigma_3_yy, crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy,
-            crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
-            crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
-            crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x,
-            crs_g_r0_y, crs_g_r0_z, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z,
+        crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
+            crs_J_3_in_spec3_yy, crs_J_3_in_spec3_yz, crs_J_3_in_spec3_zz,
+            crs_Sigma_3_in_axes3_xx, crs_Sigma_3_in_axes3_yy, crs_Sigma_3_in_axes3_zz,
+            crs_acc_3_t, crs_acc_3_t_2, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+            crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
+            crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
+            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_in_axes1_z, crs_h_2_in_spec1_y,
+            crs_h_2_in_spec1_z, crs_h_3_in_spec3_x, crs_h_3_in_spec3_y, crs_h_3_in_spec3_z,
             crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
             crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
             crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -1466,406 +1507,441 @@ def _run_dynamics(m, X, V):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
-        # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
-        # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
-        )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
-        # (crs-w_1) reciprocal vector 1
-        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
-        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
-        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
-        crs_w_1_t = crs_s_1*crs_s_3
-        crs_w_1_t_2 = crs_c_1*crs_s_3
-        axis_y_crs_axes3_in_base_x = (
-        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_y = (
-        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_z = (
-        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
-        )
-        axis_x_crs_axes3_x = (
-        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
-        )
-        axis_x_crs_axes3_y = (
-        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
-        )
-        axis_x_crs_axes3_z = (
-        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
-        )
-        inv_crs_v_1_z = 1.0/crs_v_1_z
-        # (crs-w_3) reciprocal vector 3
-        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
-        crs_w_3_t = crs_c_3*inv_crs_r_1_t_2
-        crs_w_3_t_2 = crs_s_3*inv_crs_r_1_t_2
-        # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        crs_d_alpha_3_t = crs_s_3*inv_crs_v_1_z
-        crs_d_alpha_3_t_2 = crs_c_3*inv_crs_v_1_z
-        # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2
-        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
-        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
-        # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        crs_d_Gamma_3_t = inv_crs_v_1_z*(crs_J_3_xz*crs_s_3 - crs_J_3_yz*crs_c_3)
-        crs_d_Gamma_3_t_2 = crs_J_3_zz*inv_crs_r_1_t_2
-        crs_d_Gamma_3_x = crs_c_3*crs_d_Gamma_3_t_2 - crs_h_3_y
-        crs_d_Gamma_3_y = crs_h_3_x + crs_d_Gamma_3_t_2*crs_s_3
-        # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_r_1_t_2
-        crs__r1_y_2 = crs_d_Gamma_2_t*crs_s_3 - crs_c_3*crs_link2_mass
-        # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        crs_d_Gamma_1_x = (
-        crs_c_3*crs_h_3_x + crs_h_3_y*crs_s_3 + inv_crs_v_1_z*(crs_J_2_xx +
-            crs_s_3*(crs_J_3_xx*crs_s_3 - crs_J_3_xy*crs_c_3) - crs_c_3*(crs_J_3_xy*crs_s_3 -
-            crs_J_3_yy*crs_c_3))
-        )
-        # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        crs_d_c_xx = (
-        crs_h_3_y*crs_w_3_t - crs__r1_x*(crs_c_3*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3) -
-            crs_d_Gamma_3_x*crs_w_3_t
-        )
-        crs_d_c_xy = crs_h_3_y*crs_w_3_t_2 - crs__r1_x*crs__r1_y_2 - crs_d_Gamma_3_y*crs_w_3_t
-        crs_d_c_xz = crs_d_alpha_3_t_2*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t
-        crs_d_c_yz = crs_d_alpha_3_t*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t_2
-        # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
-        crs_Q_t = (
-        crs_d_c_xx + crs__r1_y*crs__r1_y_2 + crs_d_Gamma_3_y*crs_w_3_t_2 + crs_h_3_x*crs_w_3_t_2
-        )
-        crs_Q_t_2 = 0.5*crs_Q_t
-        crs_Q_t_3 = (
-        crs_d_c_xx + crs_d_Gamma_1_x*inv_crs_v_1_z + crs_d_alpha_3_t*crs_h_3_y +
-            crs_d_alpha_3_t_2*crs_h_3_x
-        )
-        crs_Q_t_4 = 0.5*crs_Q_t_3
-        crs_Q_t_5 = (
-        axis_x_crs_axes3_x*crs_d_c_xy + axis_z_crs_axes3_in_base_x*crs_d_c_yz -
-            axis_y_crs_axes3_in_base_x*crs_Q_t_2
-        )
-        crs_Q_t_6 = (
-        axis_x_crs_axes3_y*crs_d_c_xy + axis_z_crs_axes3_in_base_y*crs_d_c_yz -
-            axis_y_crs_axes3_in_base_y*crs_Q_t_2
-        )
-        crs_Q_t_7 = (
-        axis_x_crs_axes3_z*crs_d_c_xy + axis_z_crs_axes3_in_base_z*crs_d_c_yz -
-            axis_y_crs_axes3_in_base_z*crs_Q_t_2
-        )
-        crs_Q_t_8 = axis_z_crs_axes3_in_base_x*crs_Q_t_4 - axis_x_crs_axes3_x*crs_d_c_xz
-        crs_Q_t_9 = axis_z_crs_axes3_in_base_y*crs_Q_t_4 - axis_x_crs_axes3_y*crs_d_c_xz
-        crs_Q_t_10 = axis_z_crs_axes3_in_base_z*crs_Q_t_4 - axis_x_crs_axes3_z*crs_d_c_xz
-        crs_Q_t_11 = axis_y_crs_axes3_in_base_x*crs_Q_t_5 - axis_z_crs_axes3_in_base_x*crs_Q_t_8
-        crs_Q_t_12 = 2.0*crs_Q_t_11 + crs_d_c_xx
-        crs_Q_t_13 = (
-        axis_y_crs_axes3_in_base_x*crs_Q_t_6 + axis_y_crs_axes3_in_base_y*crs_Q_t_5 -
-            axis_z_crs_axes3_in_base_x*crs_Q_t_9 - axis_z_crs_axes3_in_base_y*crs_Q_t_8
-        )
-        crs_Q_t_14 = (
-        axis_y_crs_axes3_in_base_x*crs_Q_t_7 + axis_y_crs_axes3_in_base_z*crs_Q_t_5 -
-            axis_z_crs_axes3_in_base_x*crs_Q_t_10 - axis_z_crs_axes3_in_base_z*crs_Q_t_8
-        )
-        crs_Q_t_15 = axis_y_crs_axes3_in_base_y*crs_Q_t_6 - axis_z_crs_axes3_in_base_y*crs_Q_t_9
-        crs_Q_t_16 = 2.0*crs_Q_t_15 + crs_d_c_xx
-        crs_Q_t_17 = (
-        axis_y_crs_axes3_in_base_y*crs_Q_t_7 + axis_y_crs_axes3_in_base_z*crs_Q_t_6 -
-            axis_z_crs_axes3_in_base_y*crs_Q_t_10 - axis_z_crs_axes3_in_base_z*crs_Q_t_9
-        )
-        crs_Q_t_18 = axis_y_crs_axes3_in_base_z*crs_Q_t_7 - axis_z_crs_axes3_in_base_z*crs_Q_t_10
-        crs_Q_t_19 = 2.0*crs_Q_t_18 + crs_d_c_xx
-        # (M_ta) coupling block of M
-        crs_M_ta_t = crs_Q_t_13*crs_q_in_base_z
-        crs_M_ta_t_2 = crs_Q_t_14*crs_q_in_base_y
-        crs_M_ta_t_3 = crs_M_ta_t - crs_M_ta_t_2
-        crs_M_ta_t_4 = crs_Q_t_12*crs_q_in_base_z - crs_Q_t_14*crs_q_in_base_x
-        crs_M_ta_t_5 = crs_Q_t_12*crs_q_in_base_y - crs_Q_t_13*crs_q_in_base_x
-        crs_M_ta_t_6 = crs_Q_t_16*crs_q_in_base_z - crs_Q_t_17*crs_q_in_base_y
-        crs_M_ta_t_7 = crs_Q_t_17*crs_q_in_base_x
-        crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7
-        crs_M_ta_t_9 = crs_Q_t_13*crs_q_in_base_y - crs_Q_t_16*crs_q_in_base_x
-        crs_M_ta_t_10 = crs_Q_t_17*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_y
-        crs_M_ta_t_11 = crs_Q_t_14*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_x
-        crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
-        # (M_aa) rotational block of M
-        crs_M_aa_t = crs_M_ta_t_6*crs_q_in_base_z - crs_M_ta_t_10*crs_q_in_base_y
-        crs_M_aa_t_2 = crs_M_ta_t_8*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_y
-        crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_in_base_y + crs_M_ta_t_9*crs_q_in_base_z
-        crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_x
-        crs_M_aa_t_5 = crs_M_ta_t_12*crs_q_in_base_x + crs_M_ta_t_5*crs_q_in_base_z
-        crs_M_aa_t_6 = crs_M_ta_t_5*crs_q_in_base_y - crs_M_ta_t_9*crs_q_in_base_x
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
-        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
-        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
-        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
+        crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
+        crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y
         crs_S_dot_x = crs_S_dot_t + t_dot_x
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
-        crs_S_dot_r0_x = (
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
+        )
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z
+        crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
+        crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_s_1*crs_s_3
+        crs_w_2_t_2 = -crs_c_1*crs_s_3
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t
+        )
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t
+        )
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t
+        )
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
+        )
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
+        )
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
+        )
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t
+        crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
+        crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
+        crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
+        # (crs-w_3) reciprocal vector 3
+        crs_w_3_in_axes3_x = crs_c_3_t*inv_crs_d_4_in_axes1_z
+        crs_w_3_in_axes3_y = crs_s_3*inv_crs_d_4_in_axes1_z
+        # (crs-qd_1) rate of joint 1
+        crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
             crs_S_dot_z*crs_base_frame_zy
         )
-        crs_S_dot_r0_y = (
+        crs_qd_1_t_2 = (
         crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
             crs_S_dot_z*crs_base_frame_zz
         )
-        # (crs-qd_3) rate of joint 3
-        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
-        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
-        crs_qd_3_t = (
+        crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        # (crs-qd_2) rate of joint 2
+        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
+        crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_t = crs_qd_1*crs_s_3
-        crs_omega_1_t_2 = crs_c_3*crs_qd_1
-        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3
-        crs_zeta_3_y = crs_omega_1_t*crs_qd_3
+        crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3
+        crs_omega_1_t = crs_c_3_t*crs_qd_1
+        # (crs-W_3) centripetal tensor of link 3
+        crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t
+        crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t
         # (crs-u_1) centripetal acceleration of the connection point
         crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
         crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
         crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
-        # (crs-W_3) centripetal tensor of link 3
-        crs_W_3_t = crs_omega_1_t*crs_omega_1_t
-        crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2
-        crs_W_3_t_3 = crs_qd_3*crs_qd_3
-        crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2
-        # (crs-bias) acceleration of the connection point at zero joint accelerations
-        crs_bias_t = (
-        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
-        )
-        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
-        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
-        crs_bias_x = (
-        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
-        )
-        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
-        crs_bias_z = (
-        -crs_bias_t_2*crs_omega_1_t - crs_platform_joint_offset_x*crs_zeta_3_y -
-            2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t - crs_omega_1_t_2*crs_s_3)
-        )
-        # (crs-u_1) centripetal acceleration of the connection point
-        crs_u_1_tip_x = (
+        crs_u_1_in_axes3_x = (
         axis_x_crs_axes3_x*crs_u_1_x + axis_x_crs_axes3_y*crs_u_1_y + axis_x_crs_axes3_z*crs_u_1_z
         )
-        crs_u_1_tip_y = (
-        axis_y_crs_axes3_in_base_x*crs_u_1_x + axis_y_crs_axes3_in_base_y*crs_u_1_y +
-            axis_y_crs_axes3_in_base_z*crs_u_1_z
+        crs_u_1_in_axes3_y = (
+        axis_y_crs_axes3_x*crs_u_1_x + axis_y_crs_axes3_y*crs_u_1_y + axis_y_crs_axes3_z*crs_u_1_z
         )
-        crs_u_1_tip_z = (
-        axis_z_crs_axes3_in_base_x*crs_u_1_x + axis_z_crs_axes3_in_base_y*crs_u_1_y +
-            axis_z_crs_axes3_in_base_z*crs_u_1_z
+        crs_u_1_in_axes3_z = (
+        axis_z_crs_axes3_x*crs_u_1_x + axis_z_crs_axes3_y*crs_u_1_y + axis_z_crs_axes3_z*crs_u_1_z
+        )
+        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x + crs_c_3_t*crs_q_2) -
+            crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
+        )
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
+        crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x
+        crs_bias_in_axes3_x = (
+        crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t - crs_bias_t_3*crs_omega_1_t
+        )
+        crs_bias_in_axes3_y = (
+        crs_bias_t*crs_omega_1_in_axes3_x - crs_bias_t_3*crs_omega_1_in_axes3_x
+        )
+        crs_bias_in_axes3_z = (
+        -crs_bias_t_2*crs_omega_1_in_axes3_x - crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
+            2.0*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3)
         )
         # (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        crs_rel_o_x = crs_u_1_tip_x - crs_bias_x
-        crs_rel_o_y = crs_u_1_tip_y - crs_bias_y
-        crs_rel_o_z = crs_u_1_tip_z - crs_bias_z
+        crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x
+        crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - crs_bias_in_axes3_y
+        crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - crs_bias_in_axes3_z
+        # (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        crs_qdd_1_o = crs_rel_o_z*inv_crs_v_1_z
-        crs_qdd_3_o = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_o_x - crs_rel_o_y*crs_s_3)
+        crs_qdd_3_o = (
+        -inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_o_in_axes3_x - crs_rel_o_in_axes3_y*crs_s_3)
+        )
         # (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        crs_alpha_1_o_t = crs_qdd_1_o*crs_s_3
-        crs_alpha_1_o_t_2 = crs_c_3*crs_qdd_1_o
+        crs_alpha_1_o_in_axes3_x = crs_qdd_1_o*crs_s_3
+        crs_alpha_1_o_t = crs_c_3_t*crs_qdd_1_o
+        # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        crs_d_alpha_3_in_axes3_xz = crs_s_3*crs_w_1_in_axes3_z
+        crs_d_alpha_3_t = crs_c_3_t*crs_w_1_in_axes3_z
         # (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        crs_alpha_3_o_x = crs_alpha_1_o_t + crs_zeta_3_x
-        crs_alpha_3_o_y = crs_zeta_3_y - crs_alpha_1_o_t_2
+        crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x
+        crs_alpha_3_o_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_o_t
         # (crs-B_3_o) remainder of the acceleration tensor of link 3
-        crs_B_3_o_xy = crs_qdd_3_o - crs_W_3_xy
-        crs_B_3_o_yx = -crs_W_3_xy - crs_qdd_3_o
-        crs_B_3_o_zx = -crs_alpha_3_o_y - crs_zeta_3_y
-        crs_B_3_o_zy = crs_alpha_3_o_x + crs_zeta_3_x
-        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x
-        crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1
-        crs_acc_3_o_x = crs_u_1_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3
-        crs_acc_3_o_y = crs_u_1_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3
-        crs_acc_3_o_z = crs_u_1_tip_z - crs_g_r1_x
-        # (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        crs_mu_3_o_x = (
-        crs_B_3_o_yx*crs_J_3_xz + crs_B_3_o_zy*crs_Sigma_3_yy + crs_J_3_yz*(crs_W_3_t_2 -
-            crs_W_3_t_3) + crs_Sigma_3_zz*crs_alpha_1_o_t + crs_acc_3_o_z*crs_h_3_y -
-            crs_B_3_o_zx*crs_J_3_xy - crs_acc_3_o_y*crs_h_3_z
-        )
-        crs_mu_3_o_y = (
-        crs_B_3_o_zy*crs_J_3_xy + crs_acc_3_o_x*crs_h_3_z - crs_B_3_o_xy*crs_J_3_yz -
-            crs_B_3_o_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t - crs_W_3_t_3) -
-            crs_Sigma_3_zz*crs_alpha_1_o_t_2 - crs_acc_3_o_z*crs_h_3_x
-        )
-        crs_mu_3_o_z = (
-        crs_B_3_o_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
-            crs_J_3_xz*crs_alpha_1_o_t + crs_acc_3_o_y*crs_h_3_x - crs_B_3_o_xy*crs_Sigma_3_yy -
-            crs_J_3_yz*crs_alpha_1_o_t_2 - crs_acc_3_o_x*crs_h_3_y
-        )
+        crs_B_3_o_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_3_o
+        crs_B_3_o_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3_o
+        crs_B_3_o_in_axes3_zx = -crs_alpha_3_o_in_axes3_y - crs_zeta_3_in_axes3_y
+        crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x
         # (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        crs_acc_2_o_z = (
-        crs_rel_o_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_o_y - crs_qdd_3_o*crs_r_1_t
+        crs_acc_2_o_in_axes1_z = (
+        crs_qdd_3_o*crs_r_1_t + crs_rel_o_in_axes3_x*crs_s_3 - crs_g_in_axes1_z -
+            crs_c_3_t*crs_rel_o_in_axes3_y
         )
         # (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        crs_f_2_o_t = crs_acc_2_o_z*crs_link2_mass
+        crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass
+        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
+        crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
+        crs_acc_3_o_in_axes3_x = (
+        crs_u_1_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y - crs_g_in_axes1_z*crs_s_3
+        )
+        crs_acc_3_o_in_axes3_y = (
+        crs_u_1_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z + crs_g_in_axes1_y*crs_s_3
+        )
+        crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_x
+        # (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
+        crs_mu_3_o_t_2 = crs_omega_1_t*crs_omega_1_t
+        crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t
+        crs_mu_3_o_in_axes3_x = (
+        crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz + crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy
+            + crs_J_3_in_spec3_yz*(crs_mu_3_o_t_2 - crs_mu_3_o_t_3) +
+            crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_x +
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy
+            - crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z
+        )
+        crs_mu_3_o_in_axes3_y = (
+        crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy + crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z -
+            crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz -
+            crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_o_t -
+            crs_mu_3_o_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_t -
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x
+        )
+        crs_mu_3_o_in_axes3_z = (
+        crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx + crs_J_3_in_spec3_xy*(crs_mu_3_o_t -
+            crs_mu_3_o_t_2) + crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
+            crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
+            crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_o_t -
+            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y
+        )
+        # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        crs_d_Gamma_3_in_axes3_z = (
+        crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*crs_s_3 - crs_J_3_in_spec3_yz*crs_c_3_t)
+        )
+        crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_3_in_axes3_x = crs_c_3_t*crs_d_Gamma_3_t - crs_h_3_in_spec3_y
+        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_s_3
         # (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        crs_mu_1_o_z = crs_J_2_xx*crs_qdd_1_o - crs_g_r1_x*crs_h_2_y - crs_g_r1_y*crs_h_2_z
+        crs_mu_1_o_in_axes1_z = (
+        crs_J_2_in_spec1_xx*crs_qdd_1_o - crs_g_in_axes1_x*crs_h_2_in_spec1_y -
+            crs_g_in_axes1_y*crs_h_2_in_spec1_z
+        )
         # (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        crs_N_1_o_z = crs_mu_1_o_z + crs_mu_3_o_x*crs_s_3 - crs_c_3*crs_mu_3_o_y
-        # (crs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        crs_G_o_t = inv_crs_r_1_t_2*(crs_mu_3_o_z + crs_f_2_o_t*crs_r_1_t)
+        crs_N_1_o_in_axes1_z = (
+        crs_mu_1_o_in_axes1_z + crs_mu_3_o_in_axes3_x*crs_s_3 - crs_c_3_t*crs_mu_3_o_in_axes3_y
+        )
+        # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
+        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3_t*crs_link2_mass
+        # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        crs_d_Gamma_1_in_axes1_x = (
+        crs_c_3_t*crs_h_3_in_spec3_x + crs_h_3_in_spec3_y*crs_s_3 +
+            crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx + crs_s_3*(crs_J_3_in_spec3_xx*crs_s_3 -
+            crs_J_3_in_spec3_xy*crs_c_3_t) - crs_c_3_t*(crs_J_3_in_spec3_xy*crs_s_3 -
+            crs_J_3_in_spec3_yy*crs_c_3_t))
+        )
+        # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        crs_d_c_in_axes3_xx = (
+        crs_h_3_in_spec3_y*crs_w_3_in_axes3_x - crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
+            crs_w_2_in_axes3_x*(crs_c_3_t*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3)
+        )
+        crs_d_c_in_axes3_xy = (
+        crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
+            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x
+        )
+        crs_d_c_in_axes3_xz = (
+        crs_d_alpha_3_t*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x
+        )
+        crs_d_c_in_axes3_yz = (
+        crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y
+        )
         # (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        crs_c_o_x = (
-        crs_alpha_1_o_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) -
-            crs_B_3_o_xy*crs_h_3_y - crs_G_o_t*crs_c_3 - crs_f_2_o_t*crs_s_3
+        crs_c_o_t = (
+        inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_t)
         )
-        crs_c_o_y = (
-        crs_alpha_1_o_t*crs_h_3_z + crs_c_3*crs_f_2_o_t + crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) -
-            crs_B_3_o_yx*crs_h_3_x - crs_G_o_t*crs_s_3
+        crs_c_o_in_axes3_x = (
+        crs_alpha_1_o_t*crs_h_3_in_spec3_z + crs_h_3_in_spec3_x*(crs_mu_3_o_t_2 + crs_mu_3_o_t_3)
+            - crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_o_t -
+            crs_f_2_o_in_axes1_z*crs_s_3
         )
-        crs_c_o_z = (
-        crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_o_zx*crs_h_3_x - crs_B_3_o_zy*crs_h_3_y -
-            crs_N_1_o_z*inv_crs_v_1_z
+        crs_c_o_in_axes3_y = (
+        crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z + crs_c_3_t*crs_f_2_o_in_axes1_z +
+            crs_h_3_in_spec3_y*(crs_mu_3_o_t + crs_mu_3_o_t_3) -
+            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_o_t*crs_s_3
         )
+        crs_c_o_in_axes3_z = (
+        crs_h_3_in_spec3_z*(crs_mu_3_o_t + crs_mu_3_o_t_2) -
+            crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
+            crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z
+        )
+        # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
+        crs_Q_t = (
+        crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_y +
+            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y + crs_h_3_in_spec3_x*crs_w_3_in_axes3_y
+        )
+        crs_Q_t_2 = 0.5*crs_Q_t
+        crs_Q_t_3 = (
+        crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_x*crs_w_1_in_axes3_z +
+            crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + crs_d_alpha_3_t*crs_h_3_in_spec3_x
+        )
+        crs_Q_t_4 = 0.5*crs_Q_t_3
+        crs_Q_t_5 = (
+        axis_x_crs_axes3_x*crs_d_c_in_axes3_xy + axis_z_crs_axes3_x*crs_d_c_in_axes3_yz -
+            axis_y_crs_axes3_x*crs_Q_t_2
+        )
+        crs_Q_t_6 = (
+        axis_x_crs_axes3_y*crs_d_c_in_axes3_xy + axis_z_crs_axes3_y*crs_d_c_in_axes3_yz -
+            axis_y_crs_axes3_y*crs_Q_t_2
+        )
+        crs_Q_t_7 = (
+        axis_x_crs_axes3_z*crs_d_c_in_axes3_xy + axis_z_crs_axes3_z*crs_d_c_in_axes3_yz -
+            axis_y_crs_axes3_z*crs_Q_t_2
+        )
+        crs_Q_t_8 = axis_z_crs_axes3_x*crs_Q_t_4 - axis_x_crs_axes3_x*crs_d_c_in_axes3_xz
+        crs_Q_t_9 = axis_z_crs_axes3_y*crs_Q_t_4 - axis_x_crs_axes3_y*crs_d_c_in_axes3_xz
+        crs_Q_t_10 = axis_z_crs_axes3_z*crs_Q_t_4 - axis_x_crs_axes3_z*crs_d_c_in_axes3_xz
+        crs_Q_t_11 = axis_y_crs_axes3_x*crs_Q_t_5 - axis_z_crs_axes3_x*crs_Q_t_8
+        crs_Q_xx = -2.0*crs_Q_t_11 - crs_d_c_in_axes3_xx
+        crs_Q_xy = (
+        axis_z_crs_axes3_x*crs_Q_t_9 + axis_z_crs_axes3_y*crs_Q_t_8 - axis_y_crs_axes3_x*crs_Q_t_6
+            - axis_y_crs_axes3_y*crs_Q_t_5
+        )
+        crs_Q_xz = (
+        axis_z_crs_axes3_x*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_8 -
+            axis_y_crs_axes3_x*crs_Q_t_7 - axis_y_crs_axes3_z*crs_Q_t_5
+        )
+        crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 - axis_z_crs_axes3_y*crs_Q_t_9
+        crs_Q_yy = -2.0*crs_Q_t_12 - crs_d_c_in_axes3_xx
+        crs_Q_yz = (
+        axis_z_crs_axes3_y*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_9 -
+            axis_y_crs_axes3_y*crs_Q_t_7 - axis_y_crs_axes3_z*crs_Q_t_6
+        )
+        crs_Q_t_13 = axis_y_crs_axes3_z*crs_Q_t_7 - axis_z_crs_axes3_z*crs_Q_t_10
+        crs_Q_zz = -2.0*crs_Q_t_13 - crs_d_c_in_axes3_xx
         # (crs-U) velocity and gravity terms of the leg force
-        crs_U_in_base_x = (
-        -axis_x_crs_axes3_x*crs_c_o_x - axis_y_crs_axes3_in_base_x*crs_c_o_y -
-            axis_z_crs_axes3_in_base_x*crs_c_o_z
+        crs_U_x = (
+        -axis_x_crs_axes3_x*crs_c_o_in_axes3_x - axis_y_crs_axes3_x*crs_c_o_in_axes3_y -
+            axis_z_crs_axes3_x*crs_c_o_in_axes3_z
         )
-        crs_U_in_base_y = (
-        -axis_x_crs_axes3_y*crs_c_o_x - axis_y_crs_axes3_in_base_y*crs_c_o_y -
-            axis_z_crs_axes3_in_base_y*crs_c_o_z
+        crs_U_y = (
+        -axis_x_crs_axes3_y*crs_c_o_in_axes3_x - axis_y_crs_axes3_y*crs_c_o_in_axes3_y -
+            axis_z_crs_axes3_y*crs_c_o_in_axes3_z
         )
-        crs_U_in_base_z = (
-        -axis_x_crs_axes3_z*crs_c_o_x - axis_y_crs_axes3_in_base_z*crs_c_o_y -
-            axis_z_crs_axes3_in_base_z*crs_c_o_z
+        crs_U_z = (
+        -axis_x_crs_axes3_z*crs_c_o_in_axes3_x - axis_y_crs_axes3_z*crs_c_o_in_axes3_y -
+            axis_z_crs_axes3_z*crs_c_o_in_axes3_z
         )
+        # (M_ta) coupling block of M
+        crs_M_ta_t = -crs_Q_xy*crs_q_z
+        crs_M_ta_t_2 = crs_Q_xz*crs_q_y
+        crs_M_ta_t_3 = crs_M_ta_t + crs_M_ta_t_2
+        crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x
+        crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y
+        crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z
+        crs_M_ta_t_7 = crs_Q_yz*crs_q_x
+        crs_M_ta_t_8 = crs_M_ta_t + crs_M_ta_t_7
+        crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y
+        crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z
+        crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x
+        crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
+        # (M_aa) rotational block of M
+        crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z
+        crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y + crs_M_ta_t_8*crs_q_z
+        crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z
+        crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x
+        crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x
+        crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y
         # (Z_a) rotational part of Z
-        crs_Z_a_t = crs_U_in_base_z*crs_q_in_base_y - crs_U_in_base_y*crs_q_in_base_z
-        crs_Z_a_t_2 = crs_U_in_base_x*crs_q_in_base_z - crs_U_in_base_z*crs_q_in_base_x
-        crs_Z_a_t_3 = crs_U_in_base_y*crs_q_in_base_x - crs_U_in_base_x*crs_q_in_base_y
-        # (crs-w_1) reciprocal vector 1
-        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
-        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
-        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
+        crs_Z_a_t = crs_U_z*crs_q_y - crs_U_y*crs_q_z
+        crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x
+        crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y
         # (crs-H_a_1) moment of the column's unit force about the platform origin
-        crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4
-        crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5
-        crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3
-        # (crs-w_2) reciprocal vector 2
-        crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x + axis_y_crs_axes3_in_base_x*crs__r1_y
-        crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x + axis_y_crs_axes3_in_base_y*crs__r1_y
-        crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x + axis_y_crs_axes3_in_base_z*crs__r1_y
+        crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y
+        crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z
+        crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x
         # (crs-H_a_2) moment of the column's unit force about the platform origin
-        crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z - crs_q_in_base_z*crs_w_2_in_base_y
-        crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x - crs_q_in_base_x*crs_w_2_in_base_z
-        crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y - crs_q_in_base_y*crs_w_2_in_base_x
+        crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y
+        crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
+        crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
-            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            >= 0.0) & (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z)
+            > _TOLERANCE * crs_size))
         )
         sums = m.added(sums, leg, (
-        crs_Q_t_12, crs_Q_t_13, crs_Q_t_14, crs_Q_t_16, crs_Q_t_17, crs_Q_t_19, crs_M_ta_t_3,
-            crs_M_ta_t_4, crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_8, crs_M_ta_t_9,
+        crs_Q_xx, crs_Q_xy, crs_Q_xz, crs_Q_yy, crs_Q_yz, crs_Q_zz, crs_M_ta_t_3,
+            crs_M_ta_t_4, crs_M_ta_t_5, crs_M_ta_t_6, -crs_M_ta_t_8, crs_M_ta_t_9,
             crs_M_ta_t_10, crs_M_ta_t_11, crs_M_ta_t_12, crs_M_aa_t, crs_M_aa_t_2,
-            crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5, crs_M_aa_t_6, crs_U_in_base_x,
-            crs_U_in_base_y, crs_U_in_base_z, crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3,
+            crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5, crs_M_aa_t_6, crs_U_x, crs_U_y, crs_U_z,
+            crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3,
         ))
-        out_H[_H_crs[0][leg]] = crs_w_1_t_3
-        out_H[_H_crs[1][leg]] = crs_w_1_t_4
-        out_H[_H_crs[2][leg]] = crs_w_1_t_5
+        # (crs-w_1) reciprocal vector 1
+        out_H[_H_crs[0][leg]] = crs_w_1_x
+        out_H[_H_crs[1][leg]] = crs_w_1_y
+        out_H[_H_crs[2][leg]] = crs_w_1_z
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crs[3][leg]] = crs_H_a_1_x
         out_H[_H_crs[4][leg]] = crs_H_a_1_y
         out_H[_H_crs[5][leg]] = crs_H_a_1_z
-        out_H[_H_crs[6][leg]] = crs_w_2_in_base_x
-        out_H[_H_crs[7][leg]] = crs_w_2_in_base_y
-        out_H[_H_crs[8][leg]] = crs_w_2_in_base_z
+        # (crs-w_2) reciprocal vector 2
+        out_H[_H_crs[6][leg]] = crs_w_2_x
+        out_H[_H_crs[7][leg]] = crs_w_2_y
+        out_H[_H_crs[8][leg]] = crs_w_2_z
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_crs[9][leg]] = crs_H_a_2_x
         out_H[_H_crs[10][leg]] = crs_H_a_2_y
         out_H[_H_crs[11][leg]] = crs_H_a_2_z
     (
-    total_crs_xx, total_crs_xy, total_crs_xz, total_crs_yy, total_crs_yz, total_crs_zz,
-        total_crs_xx_2, total_crs_xy_2, total_crs_xz_2, total_crs_yx, total_crs_yy_2,
-        total_crs_yz_2, total_crs_zx, total_crs_zy, total_crs_zz_2, total_crs_xx_3,
-        total_crs_xy_3, total_crs_xz_3, total_crs_yy_3, total_crs_yz_3, total_crs_zz_3,
-        total_crs_x, total_crs_y, total_crs_z, total_crs_x_2, total_crs_y_2, total_crs_z_2,
+    M_tt_crs_xx, M_tt_xy, M_tt_xz, M_tt_crs_yy, M_tt_yz, M_tt_crs_zz, M_ta_xx, M_ta_crs_xy,
+        M_ta_crs_xz, M_ta_crs_yx, M_ta_yy, M_ta_crs_yz, M_ta_crs_zx, M_ta_crs_zy, M_ta_zz,
+        M_aa_crs_xx, M_aa_crs_xy, M_aa_crs_xz, M_aa_crs_yy, M_aa_crs_yz, M_aa_crs_zz, Z_t_crs_x,
+        Z_t_crs_y, Z_t_crs_z, Z_a_crs_x, Z_a_crs_y, Z_a_crs_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_crs_xx
-    M_tt_yy = m_star - total_crs_yy
-    M_tt_zz = m_star - total_crs_zz
+    M_tt_xx = M_tt_crs_xx + m_star
+    M_tt_yy = M_tt_crs_yy + m_star
+    M_tt_zz = M_tt_crs_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_crs_xy_2
-    M_ta_xz = total_crs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_crs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_crs_yz_2
-    M_ta_zx = h_star_in_base_y + total_crs_zx
-    M_ta_zy = -h_star_in_base_x - total_crs_zy
+    M_ta_xy = M_ta_crs_xy + h_star_z
+    M_ta_xz = M_ta_crs_xz - h_star_y
+    M_ta_yx = M_ta_crs_yx - h_star_z
+    M_ta_yz = M_ta_crs_yz + h_star_x
+    M_ta_zx = M_ta_crs_zx + h_star_y
+    M_ta_zy = M_ta_crs_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_crs_xx_3
-    M_aa_xy = J_star_t_9 + total_crs_xy_3
-    M_aa_xz = J_star_t_10 - total_crs_xz_3
-    M_aa_yy = J_star_t_13 - total_crs_yy_3
-    M_aa_yz = J_star_t_15 + total_crs_yz_3
-    M_aa_zz = J_star_t_17 - total_crs_zz_3
+    M_aa_xx = J_star_xx + M_aa_crs_xx
+    M_aa_xy = J_star_xy + M_aa_crs_xy
+    M_aa_xz = J_star_xz + M_aa_crs_xz
+    M_aa_yy = J_star_yy + M_aa_crs_yy
+    M_aa_yz = J_star_yz + M_aa_crs_yz
+    M_aa_zz = J_star_zz + M_aa_crs_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_crs_x
-    Z_t_y = Z_p_y + total_crs_y
-    Z_t_z = Z_p_z + total_crs_z
+    Z_t_x = Z_p_x + Z_t_crs_x
+    Z_t_y = Z_p_y + Z_t_crs_y
+    Z_t_z = Z_p_z + Z_t_crs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_crs_x_2
-    Z_a_y = Z_q_in_base_y + total_crs_y_2
-    Z_a_z = Z_q_in_base_z + total_crs_z_2
+    Z_a_x = Z_a_crs_x + Z_q_x
+    Z_a_y = Z_a_crs_y + Z_q_y
+    Z_a_z = Z_a_crs_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_crs_xy
-    out_M[6] = -total_crs_xy
-    out_M[2] = -total_crs_xz
-    out_M[12] = -total_crs_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_crs_yz
-    out_M[13] = -total_crs_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_crs_xx_2
-    out_M[18] = total_crs_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_crs_yy_2
-    out_M[25] = -total_crs_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_crs_zz_2
-    out_M[32] = -total_crs_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1875,9 +1951,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -1889,8 +1967,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1930,49 +2009,51 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        crs_J_2_xx, crs_J_3_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yy, crs_J_3_yz, crs_J_3_zz,
-            crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx,
-            crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy,
-            crs_base_frame_zz, crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1,
-            crs_branch_2, crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x, crs_link2_mass,
-            crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
-            crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2, inv_crs_size_t,
+        crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz,
+            crs_J_3_in_spec3_yy, crs_J_3_in_spec3_yz, crs_J_3_in_spec3_zz, crs_base_frame_xx,
+            crs_base_frame_xy, crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy,
+            crs_base_frame_yz, crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz,
+            crs_base_point_x, crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2,
+            crs_h_3_in_spec3_x, crs_h_3_in_spec3_y, crs_h_3_in_spec3_z, crs_joint3_offset_x,
+            crs_link2_mass, crs_platform_joint_offset_x, crs_platform_point_x,
+            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
+            inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -1985,222 +2066,231 @@ def _run_M(m, X):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
         )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-w_1) reciprocal vector 1
-        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
-        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
-        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
-        crs_w_1_t = crs_s_1*crs_s_3
-        crs_w_1_t_2 = crs_c_1*crs_s_3
-        axis_y_crs_axes3_in_base_x = (
-        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_y = (
-        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_z = (
-        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
-        )
-        axis_x_crs_axes3_x = (
-        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
-        )
-        axis_x_crs_axes3_y = (
-        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
-        )
-        axis_x_crs_axes3_z = (
-        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
-        )
-        inv_crs_v_1_z = 1.0/crs_v_1_z
-        # (crs-w_3) reciprocal vector 3
-        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
-        crs_w_3_t = crs_c_3*inv_crs_r_1_t_2
-        crs_w_3_t_2 = crs_s_3*inv_crs_r_1_t_2
-        # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        crs_d_alpha_3_t = crs_s_3*inv_crs_v_1_z
-        crs_d_alpha_3_t_2 = crs_c_3*inv_crs_v_1_z
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2
-        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_w_2_t = crs_r_1_t*inv_crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t
+        # (crs-w_3) reciprocal vector 3
+        crs_w_3_in_axes3_x = crs_c_3_t*inv_crs_d_4_in_axes1_z
+        crs_w_3_in_axes3_y = crs_s_3*inv_crs_d_4_in_axes1_z
+        # (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        crs_d_alpha_3_in_axes3_xz = crs_s_3*crs_w_1_in_axes3_z
+        crs_d_alpha_3_t = crs_c_3_t*crs_w_1_in_axes3_z
         # (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        crs_d_Gamma_3_t = inv_crs_v_1_z*(crs_J_3_xz*crs_s_3 - crs_J_3_yz*crs_c_3)
-        crs_d_Gamma_3_t_2 = crs_J_3_zz*inv_crs_r_1_t_2
-        crs_d_Gamma_3_x = crs_c_3*crs_d_Gamma_3_t_2 - crs_h_3_y
-        crs_d_Gamma_3_y = crs_h_3_x + crs_d_Gamma_3_t_2*crs_s_3
+        crs_d_Gamma_3_in_axes3_z = (
+        crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*crs_s_3 - crs_J_3_in_spec3_yz*crs_c_3_t)
+        )
+        crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_3_in_axes3_x = crs_c_3_t*crs_d_Gamma_3_t - crs_h_3_in_spec3_y
+        crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_s_3
         # (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_r_1_t_2
-        crs__r1_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3*crs_link2_mass
+        crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_d_4_in_axes1_z
+        crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3_t*crs_link2_mass
         # (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        crs_d_Gamma_1_x = (
-        crs_c_3*crs_h_3_x + crs_h_3_y*crs_s_3 + inv_crs_v_1_z*(crs_J_2_xx +
-            crs_s_3*(crs_J_3_xx*crs_s_3 - crs_J_3_xy*crs_c_3) - crs_c_3*(crs_J_3_xy*crs_s_3 -
-            crs_J_3_yy*crs_c_3))
+        crs_d_Gamma_1_in_axes1_x = (
+        crs_c_3_t*crs_h_3_in_spec3_x + crs_h_3_in_spec3_y*crs_s_3 +
+            crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx + crs_s_3*(crs_J_3_in_spec3_xx*crs_s_3 -
+            crs_J_3_in_spec3_xy*crs_c_3_t) - crs_c_3_t*(crs_J_3_in_spec3_xy*crs_s_3 -
+            crs_J_3_in_spec3_yy*crs_c_3_t))
         )
         # (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        crs_d_c_xx = (
-        crs_h_3_y*crs_w_3_t - crs__r1_x*(crs_c_3*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3) -
-            crs_d_Gamma_3_x*crs_w_3_t
+        crs_d_c_in_axes3_xx = (
+        crs_h_3_in_spec3_y*crs_w_3_in_axes3_x - crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
+            crs_w_2_in_axes3_x*(crs_c_3_t*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3)
         )
-        crs_d_c_xy = crs_h_3_y*crs_w_3_t_2 - crs__r1_x*crs__r1_y - crs_d_Gamma_3_y*crs_w_3_t
-        crs_d_c_xz = crs_d_alpha_3_t_2*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t
-        crs_d_c_yz = crs_d_alpha_3_t*crs_h_3_z - crs_d_Gamma_3_t*crs_w_3_t_2
+        crs_d_c_in_axes3_xy = (
+        crs_h_3_in_spec3_y*crs_w_3_in_axes3_y - crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
+            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x
+        )
+        crs_d_c_in_axes3_xz = (
+        crs_d_alpha_3_t*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x
+        )
+        crs_d_c_in_axes3_yz = (
+        crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z - crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y
+        )
         # (crs-Q) inertia of the leg at the connection point, without the mass gathered there
-        crs_Q_t = (
-        crs_d_c_xx + crs__r1_y*(crs_s_3*crs_w_2_t - crs_c_3) + crs_d_Gamma_3_y*crs_w_3_t_2 +
-            crs_h_3_x*crs_w_3_t_2
+        axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1
+        crs_Q_t = crs_s_1*crs_s_3
+        crs_Q_t_2 = -crs_c_1*crs_s_3
+        axis_y_crs_axes3_x = (
+        crs_Q_t*crs_base_frame_xy + crs_Q_t_2*crs_base_frame_xz - crs_base_frame_xx*crs_c_3_t
         )
-        crs_Q_t_2 = 0.5*crs_Q_t
+        axis_y_crs_axes3_y = (
+        crs_Q_t*crs_base_frame_yy + crs_Q_t_2*crs_base_frame_yz - crs_base_frame_yx*crs_c_3_t
+        )
+        axis_y_crs_axes3_z = (
+        crs_Q_t*crs_base_frame_zy + crs_Q_t_2*crs_base_frame_zz - crs_base_frame_zx*crs_c_3_t
+        )
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
+        )
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
+        )
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
+        )
         crs_Q_t_3 = (
-        crs_d_c_xx + crs_d_Gamma_1_x*inv_crs_v_1_z + crs_d_alpha_3_t*crs_h_3_y +
-            crs_d_alpha_3_t_2*crs_h_3_x
+        crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*(crs_s_3*crs_w_2_t - crs_c_3_t) +
+            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y + crs_h_3_in_spec3_x*crs_w_3_in_axes3_y
         )
         crs_Q_t_4 = 0.5*crs_Q_t_3
         crs_Q_t_5 = (
-        axis_x_crs_axes3_x*crs_d_c_xy + axis_z_crs_axes3_in_base_x*crs_d_c_yz -
-            axis_y_crs_axes3_in_base_x*crs_Q_t_2
+        crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_x*crs_w_1_in_axes3_z +
+            crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + crs_d_alpha_3_t*crs_h_3_in_spec3_x
         )
-        crs_Q_t_6 = (
-        axis_x_crs_axes3_y*crs_d_c_xy + axis_z_crs_axes3_in_base_y*crs_d_c_yz -
-            axis_y_crs_axes3_in_base_y*crs_Q_t_2
-        )
+        crs_Q_t_6 = 0.5*crs_Q_t_5
         crs_Q_t_7 = (
-        axis_x_crs_axes3_z*crs_d_c_xy + axis_z_crs_axes3_in_base_z*crs_d_c_yz -
-            axis_y_crs_axes3_in_base_z*crs_Q_t_2
+        axis_x_crs_axes3_x*crs_d_c_in_axes3_xy + axis_z_crs_axes3_x*crs_d_c_in_axes3_yz -
+            axis_y_crs_axes3_x*crs_Q_t_4
         )
-        crs_Q_t_8 = axis_z_crs_axes3_in_base_x*crs_Q_t_4 - axis_x_crs_axes3_x*crs_d_c_xz
-        crs_Q_t_9 = axis_z_crs_axes3_in_base_y*crs_Q_t_4 - axis_x_crs_axes3_y*crs_d_c_xz
-        crs_Q_t_10 = axis_z_crs_axes3_in_base_z*crs_Q_t_4 - axis_x_crs_axes3_z*crs_d_c_xz
-        crs_Q_t_11 = axis_y_crs_axes3_in_base_x*crs_Q_t_5 - axis_z_crs_axes3_in_base_x*crs_Q_t_8
-        crs_Q_t_12 = 2.0*crs_Q_t_11 + crs_d_c_xx
-        crs_Q_t_13 = (
-        axis_y_crs_axes3_in_base_x*crs_Q_t_6 + axis_y_crs_axes3_in_base_y*crs_Q_t_5 -
-            axis_z_crs_axes3_in_base_x*crs_Q_t_9 - axis_z_crs_axes3_in_base_y*crs_Q_t_8
+        crs_Q_t_8 = (
+        axis_x_crs_axes3_y*crs_d_c_in_axes3_xy + axis_z_crs_axes3_y*crs_d_c_in_axes3_yz -
+            axis_y_crs_axes3_y*crs_Q_t_4
         )
-        crs_Q_t_14 = (
-        axis_y_crs_axes3_in_base_x*crs_Q_t_7 + axis_y_crs_axes3_in_base_z*crs_Q_t_5 -
-            axis_z_crs_axes3_in_base_x*crs_Q_t_10 - axis_z_crs_axes3_in_base_z*crs_Q_t_8
+        crs_Q_t_9 = (
+        axis_x_crs_axes3_z*crs_d_c_in_axes3_xy + axis_z_crs_axes3_z*crs_d_c_in_axes3_yz -
+            axis_y_crs_axes3_z*crs_Q_t_4
         )
-        crs_Q_t_15 = axis_y_crs_axes3_in_base_y*crs_Q_t_6 - axis_z_crs_axes3_in_base_y*crs_Q_t_9
-        crs_Q_t_16 = 2.0*crs_Q_t_15 + crs_d_c_xx
-        crs_Q_t_17 = (
-        axis_y_crs_axes3_in_base_y*crs_Q_t_7 + axis_y_crs_axes3_in_base_z*crs_Q_t_6 -
-            axis_z_crs_axes3_in_base_y*crs_Q_t_10 - axis_z_crs_axes3_in_base_z*crs_Q_t_9
+        crs_Q_t_10 = axis_z_crs_axes3_x*crs_Q_t_6 - axis_x_crs_axes3_x*crs_d_c_in_axes3_xz
+        crs_Q_t_11 = axis_z_crs_axes3_y*crs_Q_t_6 - axis_x_crs_axes3_y*crs_d_c_in_axes3_xz
+        crs_Q_t_12 = axis_z_crs_axes3_z*crs_Q_t_6 - axis_x_crs_axes3_z*crs_d_c_in_axes3_xz
+        crs_Q_t_13 = axis_y_crs_axes3_x*crs_Q_t_7 - axis_z_crs_axes3_x*crs_Q_t_10
+        crs_Q_xx = -2.0*crs_Q_t_13 - crs_d_c_in_axes3_xx
+        crs_Q_xy = (
+        axis_z_crs_axes3_x*crs_Q_t_11 + axis_z_crs_axes3_y*crs_Q_t_10 -
+            axis_y_crs_axes3_x*crs_Q_t_8 - axis_y_crs_axes3_y*crs_Q_t_7
         )
-        crs_Q_t_18 = axis_y_crs_axes3_in_base_z*crs_Q_t_7 - axis_z_crs_axes3_in_base_z*crs_Q_t_10
-        crs_Q_t_19 = 2.0*crs_Q_t_18 + crs_d_c_xx
+        crs_Q_xz = (
+        axis_z_crs_axes3_x*crs_Q_t_12 + axis_z_crs_axes3_z*crs_Q_t_10 -
+            axis_y_crs_axes3_x*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_7
+        )
+        crs_Q_t_14 = axis_y_crs_axes3_y*crs_Q_t_8 - axis_z_crs_axes3_y*crs_Q_t_11
+        crs_Q_yy = -2.0*crs_Q_t_14 - crs_d_c_in_axes3_xx
+        crs_Q_yz = (
+        axis_z_crs_axes3_y*crs_Q_t_12 + axis_z_crs_axes3_z*crs_Q_t_11 -
+            axis_y_crs_axes3_y*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_8
+        )
+        crs_Q_t_15 = axis_y_crs_axes3_z*crs_Q_t_9 - axis_z_crs_axes3_z*crs_Q_t_12
+        crs_Q_zz = -2.0*crs_Q_t_15 - crs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        crs_M_ta_t = crs_Q_t_13*crs_q_in_base_z
-        crs_M_ta_t_2 = crs_Q_t_14*crs_q_in_base_y
-        crs_M_ta_t_3 = crs_M_ta_t - crs_M_ta_t_2
-        crs_M_ta_t_4 = crs_Q_t_12*crs_q_in_base_z - crs_Q_t_14*crs_q_in_base_x
-        crs_M_ta_t_5 = crs_Q_t_12*crs_q_in_base_y - crs_Q_t_13*crs_q_in_base_x
-        crs_M_ta_t_6 = crs_Q_t_16*crs_q_in_base_z - crs_Q_t_17*crs_q_in_base_y
-        crs_M_ta_t_7 = crs_Q_t_17*crs_q_in_base_x
-        crs_M_ta_t_8 = crs_M_ta_t - crs_M_ta_t_7
-        crs_M_ta_t_9 = crs_Q_t_13*crs_q_in_base_y - crs_Q_t_16*crs_q_in_base_x
-        crs_M_ta_t_10 = crs_Q_t_17*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_y
-        crs_M_ta_t_11 = crs_Q_t_14*crs_q_in_base_z - crs_Q_t_19*crs_q_in_base_x
+        crs_M_ta_t = -crs_Q_xy*crs_q_z
+        crs_M_ta_t_2 = crs_Q_xz*crs_q_y
+        crs_M_ta_t_3 = crs_M_ta_t + crs_M_ta_t_2
+        crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x
+        crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y
+        crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z
+        crs_M_ta_t_7 = crs_Q_yz*crs_q_x
+        crs_M_ta_t_8 = crs_M_ta_t + crs_M_ta_t_7
+        crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y
+        crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z
+        crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x
         crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2
         # (M_aa) rotational block of M
-        crs_M_aa_t = crs_M_ta_t_6*crs_q_in_base_z - crs_M_ta_t_10*crs_q_in_base_y
-        crs_M_aa_t_2 = crs_M_ta_t_8*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_y
-        crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_in_base_y + crs_M_ta_t_9*crs_q_in_base_z
-        crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_in_base_z - crs_M_ta_t_11*crs_q_in_base_x
-        crs_M_aa_t_5 = crs_M_ta_t_12*crs_q_in_base_x + crs_M_ta_t_5*crs_q_in_base_z
-        crs_M_aa_t_6 = crs_M_ta_t_5*crs_q_in_base_y - crs_M_ta_t_9*crs_q_in_base_x
+        crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z
+        crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y + crs_M_ta_t_8*crs_q_z
+        crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z
+        crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x
+        crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x
+        crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
-            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            >= 0.0) & (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z)
+            > _TOLERANCE * crs_size))
         )
         sums = m.added(sums, leg, (
-        crs_Q_t_12, crs_Q_t_13, crs_Q_t_14, crs_Q_t_16, crs_Q_t_17, crs_Q_t_19, crs_M_ta_t_3,
-            crs_M_ta_t_4, crs_M_ta_t_5, crs_M_ta_t_6, crs_M_ta_t_8, crs_M_ta_t_9,
+        crs_Q_xx, crs_Q_xy, crs_Q_xz, crs_Q_yy, crs_Q_yz, crs_Q_zz, crs_M_ta_t_3,
+            crs_M_ta_t_4, crs_M_ta_t_5, crs_M_ta_t_6, -crs_M_ta_t_8, crs_M_ta_t_9,
             crs_M_ta_t_10, crs_M_ta_t_11, crs_M_ta_t_12, crs_M_aa_t, crs_M_aa_t_2,
             crs_M_aa_t_3, crs_M_aa_t_4, crs_M_aa_t_5, crs_M_aa_t_6,
         ))
     (
-    total_crs_xx, total_crs_xy, total_crs_xz, total_crs_yy, total_crs_yz, total_crs_zz,
-        total_crs_xx_2, total_crs_xy_2, total_crs_xz_2, total_crs_yx, total_crs_yy_2,
-        total_crs_yz_2, total_crs_zx, total_crs_zy, total_crs_zz_2, total_crs_xx_3,
-        total_crs_xy_3, total_crs_xz_3, total_crs_yy_3, total_crs_yz_3, total_crs_zz_3,
+    M_tt_crs_xx, M_tt_xy, M_tt_xz, M_tt_crs_yy, M_tt_yz, M_tt_crs_zz, M_ta_xx, M_ta_crs_xy,
+        M_ta_crs_xz, M_ta_crs_yx, M_ta_yy, M_ta_crs_yz, M_ta_crs_zx, M_ta_crs_zy, M_ta_zz,
+        M_aa_crs_xx, M_aa_crs_xy, M_aa_crs_xz, M_aa_crs_yy, M_aa_crs_yz, M_aa_crs_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_crs_xx
-    M_tt_yy = m_star - total_crs_yy
-    M_tt_zz = m_star - total_crs_zz
+    M_tt_xx = M_tt_crs_xx + m_star
+    M_tt_yy = M_tt_crs_yy + m_star
+    M_tt_zz = M_tt_crs_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_crs_xy_2
-    M_ta_xz = total_crs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_crs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_crs_yz_2
-    M_ta_zx = h_star_in_base_y + total_crs_zx
-    M_ta_zy = -h_star_in_base_x - total_crs_zy
+    M_ta_xy = M_ta_crs_xy + h_star_z
+    M_ta_xz = M_ta_crs_xz - h_star_y
+    M_ta_yx = M_ta_crs_yx - h_star_z
+    M_ta_yz = M_ta_crs_yz + h_star_x
+    M_ta_zx = M_ta_crs_zx + h_star_y
+    M_ta_zy = M_ta_crs_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_crs_xx_3
-    M_aa_xy = J_star_t_9 + total_crs_xy_3
-    M_aa_xz = J_star_t_10 - total_crs_xz_3
-    M_aa_yy = J_star_t_13 - total_crs_yy_3
-    M_aa_yz = J_star_t_15 + total_crs_yz_3
-    M_aa_zz = J_star_t_17 - total_crs_zz_3
+    M_aa_xx = J_star_xx + M_aa_crs_xx
+    M_aa_xy = J_star_xy + M_aa_crs_xy
+    M_aa_xz = J_star_xz + M_aa_crs_xz
+    M_aa_yy = J_star_yy + M_aa_crs_yy
+    M_aa_yz = J_star_yz + M_aa_crs_yz
+    M_aa_zz = J_star_zz + M_aa_crs_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_crs_xy
-    out_M[6] = -total_crs_xy
-    out_M[2] = -total_crs_xz
-    out_M[12] = -total_crs_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_crs_yz
-    out_M[13] = -total_crs_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_crs_xx_2
-    out_M[18] = total_crs_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_crs_yy_2
-    out_M[25] = -total_crs_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_crs_zz_2
-    out_M[32] = -total_crs_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2218,8 +2308,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2272,58 +2363,77 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
-            crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+        crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
+            crs_Sigma_3_in_axes3_xx, crs_Sigma_3_in_axes3_yy, crs_Sigma_3_in_axes3_zz,
+            crs_acc_3_t, crs_acc_3_t_2, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
             crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
             crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
-            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y, crs_g_r0_z,
-            crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x,
-            crs_link2_mass, crs_platform_joint_offset_x, crs_platform_point_x,
-            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
-            inv_crs_size_t,
+            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_in_axes1_z, crs_h_2_in_spec1_y,
+            crs_h_2_in_spec1_z, crs_h_3_in_spec3_x, crs_h_3_in_spec3_y, crs_h_3_in_spec3_z,
+            crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+            crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+            crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -2336,233 +2446,253 @@ def _run_Z(m, X, V):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
-        # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
-        # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
-        )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
-        # (crs-w_1) reciprocal vector 1
-        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
-        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
-        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
-        crs_w_1_t = crs_s_1*crs_s_3
-        crs_w_1_t_2 = crs_c_1*crs_s_3
-        axis_y_crs_axes3_in_base_x = (
-        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_y = (
-        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_z = (
-        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
-        )
-        axis_x_crs_axes3_x = (
-        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
-        )
-        axis_x_crs_axes3_y = (
-        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
-        )
-        axis_x_crs_axes3_z = (
-        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
-        )
-        inv_crs_v_1_z = 1.0/crs_v_1_z
-        # (crs-w_3) reciprocal vector 3
-        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
-        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
-        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
-        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
+        crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
+        crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y
         crs_S_dot_x = crs_S_dot_t + t_dot_x
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
-        crs_S_dot_r0_x = (
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
+        )
+        # (crs-w_1) reciprocal vector 1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        # (crs-qd_1) rate of joint 1
+        crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
             crs_S_dot_z*crs_base_frame_zy
         )
-        crs_S_dot_r0_y = (
+        crs_qd_1_t_2 = (
         crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
             crs_S_dot_z*crs_base_frame_zz
         )
-        # (crs-qd_3) rate of joint 3
-        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
-        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
-        crs_qd_3_t = (
+        crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        # (crs-qd_2) rate of joint 2
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
+        crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_t = crs_qd_1*crs_s_3
-        crs_omega_1_t_2 = crs_c_3*crs_qd_1
-        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3
-        crs_zeta_3_y = crs_omega_1_t*crs_qd_3
+        crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3
+        crs_omega_1_t = crs_c_3_t*crs_qd_1
+        # (crs-W_3) centripetal tensor of link 3
+        crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t
+        crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t
         # (crs-u_1) centripetal acceleration of the connection point
+        axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1
+        crs_u_1_t = crs_s_1*crs_s_3
+        crs_u_1_t_2 = -crs_c_1*crs_s_3
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_u_1_t + crs_base_frame_xz*crs_u_1_t_2 - crs_base_frame_xx*crs_c_3_t
+        )
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_u_1_t + crs_base_frame_yz*crs_u_1_t_2 - crs_base_frame_yx*crs_c_3_t
+        )
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_u_1_t + crs_base_frame_zz*crs_u_1_t_2 - crs_base_frame_zx*crs_c_3_t
+        )
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
+        )
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
+        )
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
+        )
         crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
         crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
         crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
-        # (crs-W_3) centripetal tensor of link 3
-        crs_W_3_t = crs_omega_1_t*crs_omega_1_t
-        crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2
-        crs_W_3_t_3 = crs_qd_3*crs_qd_3
-        crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2
-        # (crs-bias) acceleration of the connection point at zero joint accelerations
-        crs_bias_t = (
-        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
-        )
-        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
-        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
-        crs_bias_x = (
-        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
-        )
-        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
-        crs_bias_z = (
-        -crs_bias_t_2*crs_omega_1_t - crs_platform_joint_offset_x*crs_zeta_3_y -
-            2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t - crs_omega_1_t_2*crs_s_3)
-        )
-        # (crs-u_1) centripetal acceleration of the connection point
-        crs_u_1_tip_x = (
+        crs_u_1_in_axes3_x = (
         axis_x_crs_axes3_x*crs_u_1_x + axis_x_crs_axes3_y*crs_u_1_y + axis_x_crs_axes3_z*crs_u_1_z
         )
-        crs_u_1_tip_y = (
-        axis_y_crs_axes3_in_base_x*crs_u_1_x + axis_y_crs_axes3_in_base_y*crs_u_1_y +
-            axis_y_crs_axes3_in_base_z*crs_u_1_z
+        crs_u_1_in_axes3_y = (
+        axis_y_crs_axes3_x*crs_u_1_x + axis_y_crs_axes3_y*crs_u_1_y + axis_y_crs_axes3_z*crs_u_1_z
         )
-        crs_u_1_tip_z = (
-        axis_z_crs_axes3_in_base_x*crs_u_1_x + axis_z_crs_axes3_in_base_y*crs_u_1_y +
-            axis_z_crs_axes3_in_base_z*crs_u_1_z
+        crs_u_1_in_axes3_z = (
+        axis_z_crs_axes3_x*crs_u_1_x + axis_z_crs_axes3_y*crs_u_1_y + axis_z_crs_axes3_z*crs_u_1_z
+        )
+        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x + crs_c_3_t*crs_q_2) -
+            crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
+        )
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
+        crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x
+        crs_bias_in_axes3_x = (
+        crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t - crs_bias_t_3*crs_omega_1_t
+        )
+        crs_bias_in_axes3_y = (
+        crs_bias_t*crs_omega_1_in_axes3_x - crs_bias_t_3*crs_omega_1_in_axes3_x
+        )
+        crs_bias_in_axes3_z = (
+        -crs_bias_t_2*crs_omega_1_in_axes3_x - crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
+            2.0*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3)
         )
         # (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        crs_rel_o_x = crs_u_1_tip_x - crs_bias_x
-        crs_rel_o_y = crs_u_1_tip_y - crs_bias_y
-        crs_rel_o_z = crs_u_1_tip_z - crs_bias_z
+        crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x
+        crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - crs_bias_in_axes3_y
+        crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - crs_bias_in_axes3_z
+        # (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z
         # (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        crs_qdd_1_o = crs_rel_o_z*inv_crs_v_1_z
-        crs_qdd_3_o = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_o_x - crs_rel_o_y*crs_s_3)
+        crs_qdd_3_o = (
+        -inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_o_in_axes3_x - crs_rel_o_in_axes3_y*crs_s_3)
+        )
         # (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        crs_alpha_1_o_t = crs_qdd_1_o*crs_s_3
-        crs_alpha_1_o_t_2 = crs_c_3*crs_qdd_1_o
+        crs_alpha_1_o_in_axes3_x = crs_qdd_1_o*crs_s_3
+        crs_alpha_1_o_t = crs_c_3_t*crs_qdd_1_o
         # (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        crs_alpha_3_o_x = crs_alpha_1_o_t + crs_zeta_3_x
-        crs_alpha_3_o_y = crs_zeta_3_y - crs_alpha_1_o_t_2
+        crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x
+        crs_alpha_3_o_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_o_t
         # (crs-B_3_o) remainder of the acceleration tensor of link 3
-        crs_B_3_o_xy = crs_qdd_3_o - crs_W_3_xy
-        crs_B_3_o_yx = -crs_W_3_xy - crs_qdd_3_o
-        crs_B_3_o_zx = -crs_alpha_3_o_y - crs_zeta_3_y
-        crs_B_3_o_zy = crs_alpha_3_o_x + crs_zeta_3_x
-        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x
-        crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1
-        crs_acc_3_o_x = crs_u_1_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3
-        crs_acc_3_o_y = crs_u_1_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3
-        crs_acc_3_o_z = crs_u_1_tip_z - crs_g_r1_x
-        # (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        crs_mu_3_o_x = (
-        crs_B_3_o_yx*crs_J_3_xz + crs_B_3_o_zy*crs_Sigma_3_yy + crs_J_3_yz*(crs_W_3_t_2 -
-            crs_W_3_t_3) + crs_Sigma_3_zz*crs_alpha_1_o_t + crs_acc_3_o_z*crs_h_3_y -
-            crs_B_3_o_zx*crs_J_3_xy - crs_acc_3_o_y*crs_h_3_z
-        )
-        crs_mu_3_o_y = (
-        crs_B_3_o_zy*crs_J_3_xy + crs_acc_3_o_x*crs_h_3_z - crs_B_3_o_xy*crs_J_3_yz -
-            crs_B_3_o_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t - crs_W_3_t_3) -
-            crs_Sigma_3_zz*crs_alpha_1_o_t_2 - crs_acc_3_o_z*crs_h_3_x
-        )
-        crs_mu_3_o_z = (
-        crs_B_3_o_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
-            crs_J_3_xz*crs_alpha_1_o_t + crs_acc_3_o_y*crs_h_3_x - crs_B_3_o_xy*crs_Sigma_3_yy -
-            crs_J_3_yz*crs_alpha_1_o_t_2 - crs_acc_3_o_x*crs_h_3_y
-        )
+        crs_B_3_o_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_3_o
+        crs_B_3_o_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3_o
+        crs_B_3_o_in_axes3_zx = -crs_alpha_3_o_in_axes3_y - crs_zeta_3_in_axes3_y
+        crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x
         # (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        crs_acc_2_o_z = (
-        crs_rel_o_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_o_y - crs_qdd_3_o*crs_r_1_t
+        crs_acc_2_o_in_axes1_z = (
+        crs_qdd_3_o*crs_r_1_t + crs_rel_o_in_axes3_x*crs_s_3 - crs_g_in_axes1_z -
+            crs_c_3_t*crs_rel_o_in_axes3_y
         )
         # (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        crs_f_2_o_t = crs_acc_2_o_z*crs_link2_mass
+        crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass
+        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
+        crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
+        crs_acc_3_o_in_axes3_x = (
+        crs_u_1_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y - crs_g_in_axes1_z*crs_s_3
+        )
+        crs_acc_3_o_in_axes3_y = (
+        crs_u_1_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z + crs_g_in_axes1_y*crs_s_3
+        )
+        crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_x
+        # (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
+        crs_mu_3_o_t_2 = crs_omega_1_t*crs_omega_1_t
+        crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t
+        crs_mu_3_o_in_axes3_x = (
+        crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz + crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy
+            + crs_J_3_in_spec3_yz*(crs_mu_3_o_t_2 - crs_mu_3_o_t_3) +
+            crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_x +
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy
+            - crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z
+        )
+        crs_mu_3_o_in_axes3_y = (
+        crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy + crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z -
+            crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz -
+            crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_o_t -
+            crs_mu_3_o_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_t -
+            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x
+        )
+        crs_mu_3_o_in_axes3_z = (
+        crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx + crs_J_3_in_spec3_xy*(crs_mu_3_o_t -
+            crs_mu_3_o_t_2) + crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
+            crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
+            crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_o_t -
+            crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y
+        )
         # (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        crs_mu_1_o_z = crs_J_2_xx*crs_qdd_1_o - crs_g_r1_x*crs_h_2_y - crs_g_r1_y*crs_h_2_z
+        crs_mu_1_o_in_axes1_z = (
+        crs_J_2_in_spec1_xx*crs_qdd_1_o - crs_g_in_axes1_x*crs_h_2_in_spec1_y -
+            crs_g_in_axes1_y*crs_h_2_in_spec1_z
+        )
         # (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        crs_N_1_o_z = crs_mu_1_o_z + crs_mu_3_o_x*crs_s_3 - crs_c_3*crs_mu_3_o_y
-        # (crs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        crs_G_o_t = inv_crs_r_1_t_2*(crs_mu_3_o_z + crs_f_2_o_t*crs_r_1_t)
+        crs_N_1_o_in_axes1_z = (
+        crs_mu_1_o_in_axes1_z + crs_mu_3_o_in_axes3_x*crs_s_3 - crs_c_3_t*crs_mu_3_o_in_axes3_y
+        )
         # (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        crs_c_o_x = (
-        crs_alpha_1_o_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) -
-            crs_B_3_o_xy*crs_h_3_y - crs_G_o_t*crs_c_3 - crs_f_2_o_t*crs_s_3
+        crs_c_o_t = (
+        inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z + crs_f_2_o_in_axes1_z*crs_r_1_t)
         )
-        crs_c_o_y = (
-        crs_alpha_1_o_t*crs_h_3_z + crs_c_3*crs_f_2_o_t + crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) -
-            crs_B_3_o_yx*crs_h_3_x - crs_G_o_t*crs_s_3
+        crs_c_o_in_axes3_x = (
+        crs_alpha_1_o_t*crs_h_3_in_spec3_z + crs_h_3_in_spec3_x*(crs_mu_3_o_t_2 + crs_mu_3_o_t_3)
+            - crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_o_t -
+            crs_f_2_o_in_axes1_z*crs_s_3
         )
-        crs_c_o_z = (
-        crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_o_zx*crs_h_3_x - crs_B_3_o_zy*crs_h_3_y -
-            crs_N_1_o_z*inv_crs_v_1_z
+        crs_c_o_in_axes3_y = (
+        crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z + crs_c_3_t*crs_f_2_o_in_axes1_z +
+            crs_h_3_in_spec3_y*(crs_mu_3_o_t + crs_mu_3_o_t_3) -
+            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_o_t*crs_s_3
+        )
+        crs_c_o_in_axes3_z = (
+        crs_h_3_in_spec3_z*(crs_mu_3_o_t + crs_mu_3_o_t_2) -
+            crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
+            crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z
         )
         # (crs-U) velocity and gravity terms of the leg force
-        crs_U_in_base_x = (
-        -axis_x_crs_axes3_x*crs_c_o_x - axis_y_crs_axes3_in_base_x*crs_c_o_y -
-            axis_z_crs_axes3_in_base_x*crs_c_o_z
+        crs_U_x = (
+        -axis_x_crs_axes3_x*crs_c_o_in_axes3_x - axis_y_crs_axes3_x*crs_c_o_in_axes3_y -
+            axis_z_crs_axes3_x*crs_c_o_in_axes3_z
         )
-        crs_U_in_base_y = (
-        -axis_x_crs_axes3_y*crs_c_o_x - axis_y_crs_axes3_in_base_y*crs_c_o_y -
-            axis_z_crs_axes3_in_base_y*crs_c_o_z
+        crs_U_y = (
+        -axis_x_crs_axes3_y*crs_c_o_in_axes3_x - axis_y_crs_axes3_y*crs_c_o_in_axes3_y -
+            axis_z_crs_axes3_y*crs_c_o_in_axes3_z
         )
-        crs_U_in_base_z = (
-        -axis_x_crs_axes3_z*crs_c_o_x - axis_y_crs_axes3_in_base_z*crs_c_o_y -
-            axis_z_crs_axes3_in_base_z*crs_c_o_z
+        crs_U_z = (
+        -axis_x_crs_axes3_z*crs_c_o_in_axes3_x - axis_y_crs_axes3_z*crs_c_o_in_axes3_y -
+            axis_z_crs_axes3_z*crs_c_o_in_axes3_z
         )
         # (Z_a) rotational part of Z
-        crs_Z_a_t = crs_U_in_base_z*crs_q_in_base_y - crs_U_in_base_y*crs_q_in_base_z
-        crs_Z_a_t_2 = crs_U_in_base_x*crs_q_in_base_z - crs_U_in_base_z*crs_q_in_base_x
-        crs_Z_a_t_3 = crs_U_in_base_y*crs_q_in_base_x - crs_U_in_base_x*crs_q_in_base_y
+        crs_Z_a_t = crs_U_z*crs_q_y - crs_U_y*crs_q_z
+        crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x
+        crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
-            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            >= 0.0) & (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z)
+            > _TOLERANCE * crs_size))
         )
         sums = m.added(sums, leg, (
-        crs_U_in_base_x, crs_U_in_base_y, crs_U_in_base_z, crs_Z_a_t, crs_Z_a_t_2,
-            crs_Z_a_t_3,
+        crs_U_x, crs_U_y, crs_U_z, crs_Z_a_t, crs_Z_a_t_2, crs_Z_a_t_3,
         ))
-    total_crs_x, total_crs_y, total_crs_z, total_crs_x_2, total_crs_y_2, total_crs_z_2 = sums
+    Z_t_crs_x, Z_t_crs_y, Z_t_crs_z, Z_a_crs_x, Z_a_crs_y, Z_a_crs_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_crs_x
-    Z_t_y = Z_p_y + total_crs_y
-    Z_t_z = Z_p_z + total_crs_z
+    Z_t_x = Z_p_x + Z_t_crs_x
+    Z_t_y = Z_p_y + Z_t_crs_y
+    Z_t_z = Z_p_z + Z_t_crs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_crs_x_2
-    Z_a_y = Z_q_in_base_y + total_crs_y_2
-    Z_a_z = Z_q_in_base_z + total_crs_z_2
+    Z_a_x = Z_a_crs_x + Z_q_x
+    Z_a_y = Z_a_crs_y + Z_q_y
+    Z_a_z = Z_a_crs_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2620,18 +2750,18 @@ def _run_H(m, X):
             inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -2644,98 +2774,100 @@ def _run_H(m, X):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
         )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-w_1) reciprocal vector 1
-        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
-        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
-        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
-        crs_w_1_t = crs_s_1*crs_s_3
-        crs_w_1_t_2 = crs_c_1*crs_s_3
-        axis_y_crs_axes3_in_base_x = (
-        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_y = (
-        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_z = (
-        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
-        )
-        inv_crs_v_1_z = 1.0/crs_v_1_z
+        axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z
+        crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
+        crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_r_1_t/crs_r_1_t_2
-        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
-        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
-        # (crs-w_1) reciprocal vector 1
-        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
-        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
-        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
+        crs_w_2_t = crs_s_1*crs_s_3
+        crs_w_2_t_2 = -crs_c_1*crs_s_3
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t
+        )
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t
+        )
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t
+        )
+        crs_w_2_t_3 = crs_r_1_t/crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t
+        crs_w_2_x = (
+        axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y)
+        )
+        crs_w_2_y = (
+        axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z)
+        )
+        crs_w_2_z = (
+        axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x)
+        )
         # (crs-H_a_1) moment of the column's unit force about the platform origin
-        crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4
-        crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5
-        crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3
-        # (crs-w_2) reciprocal vector 2
-        crs_w_2_in_base_x = (
-        axis_y_crs_axes3_in_base_x*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y)
-        )
-        crs_w_2_in_base_y = (
-        axis_y_crs_axes3_in_base_y*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z)
-        )
-        crs_w_2_in_base_z = (
-        axis_y_crs_axes3_in_base_z*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x)
-        )
+        crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y
+        crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z
+        crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x
         # (crs-H_a_2) moment of the column's unit force about the platform origin
-        crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z - crs_q_in_base_z*crs_w_2_in_base_y
-        crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x - crs_q_in_base_x*crs_w_2_in_base_z
-        crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y - crs_q_in_base_y*crs_w_2_in_base_x
+        crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y
+        crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
+        crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
-            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            >= 0.0) & (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z)
+            > _TOLERANCE * crs_size))
         )
-        out_H[_H_crs[0][leg]] = crs_w_1_t_3
-        out_H[_H_crs[1][leg]] = crs_w_1_t_4
-        out_H[_H_crs[2][leg]] = crs_w_1_t_5
+        # (crs-w_1) reciprocal vector 1
+        out_H[_H_crs[0][leg]] = crs_w_1_x
+        out_H[_H_crs[1][leg]] = crs_w_1_y
+        out_H[_H_crs[2][leg]] = crs_w_1_z
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crs[3][leg]] = crs_H_a_1_x
         out_H[_H_crs[4][leg]] = crs_H_a_1_y
         out_H[_H_crs[5][leg]] = crs_H_a_1_z
-        out_H[_H_crs[6][leg]] = crs_w_2_in_base_x
-        out_H[_H_crs[7][leg]] = crs_w_2_in_base_y
-        out_H[_H_crs[8][leg]] = crs_w_2_in_base_z
+        # (crs-w_2) reciprocal vector 2
+        out_H[_H_crs[6][leg]] = crs_w_2_x
+        out_H[_H_crs[7][leg]] = crs_w_2_y
+        out_H[_H_crs[8][leg]] = crs_w_2_z
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_crs[9][leg]] = crs_H_a_2_x
         out_H[_H_crs[10][leg]] = crs_H_a_2_y
         out_H[_H_crs[11][leg]] = crs_H_a_2_z
@@ -2747,8 +2879,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2814,90 +2947,104 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
-            crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+        crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
+            crs_Sigma_3_in_axes3_xx, crs_Sigma_3_in_axes3_yy, crs_Sigma_3_in_axes3_zz,
+            crs_acc_3_t, crs_acc_3_t_2, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
             crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
             crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
-            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y, crs_g_r0_z,
-            crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x,
-            crs_link2_mass, crs_platform_joint_offset_x, crs_platform_point_x,
-            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
-            inv_crs_size_t,
+            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_in_axes1_z, crs_h_2_in_spec1_y,
+            crs_h_2_in_spec1_z, crs_h_3_in_spec3_x, crs_h_3_in_spec3_y, crs_h_3_in_spec3_z,
+            crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
+            crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+            crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -2910,267 +3057,288 @@ def _run_required(m, X, V, A):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
-        # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
-        # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
-        )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
-        # (crs-w_1) reciprocal vector 1
-        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
-        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
-        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
-        crs_w_1_t = crs_s_1*crs_s_3
-        crs_w_1_t_2 = crs_c_1*crs_s_3
-        axis_y_crs_axes3_in_base_x = (
-        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_y = (
-        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_z = (
-        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
-        )
-        axis_x_crs_axes3_x = (
-        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
-        )
-        axis_x_crs_axes3_y = (
-        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
-        )
-        axis_x_crs_axes3_z = (
-        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
-        )
-        inv_crs_v_1_z = 1.0/crs_v_1_z
-        # (crs-w_3) reciprocal vector 3
-        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
-        # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2
-        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
-        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
-        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
-        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
-        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
+        crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
+        crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y
         crs_S_dot_x = crs_S_dot_t + t_dot_x
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
-        crs_S_dot_r0_x = (
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
+        )
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z
+        crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
+        crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_s_1*crs_s_3
+        crs_w_2_t_2 = -crs_c_1*crs_s_3
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t
+        )
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t
+        )
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t
+        )
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
+        )
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
+        )
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
+        )
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t
+        crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
+        crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
+        crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
+        # (crs-qd_1) rate of joint 1
+        crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
             crs_S_dot_z*crs_base_frame_zy
         )
-        crs_S_dot_r0_y = (
+        crs_qd_1_t_2 = (
         crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
             crs_S_dot_z*crs_base_frame_zz
         )
-        # (crs-qd_3) rate of joint 3
-        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
-        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
-        crs_qd_3_t = (
+        crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        # (crs-qd_2) rate of joint 2
+        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
+        crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_t = crs_qd_1*crs_s_3
-        crs_omega_1_t_2 = crs_c_3*crs_qd_1
-        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3
-        crs_zeta_3_y = crs_omega_1_t*crs_qd_3
+        crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3
+        crs_omega_1_t = crs_c_3_t*crs_qd_1
         # (crs-W_3) centripetal tensor of link 3
-        crs_W_3_t = crs_omega_1_t*crs_omega_1_t
-        crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2
-        crs_W_3_t_3 = crs_qd_3*crs_qd_3
-        crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2
-        # (crs-bias) acceleration of the connection point at zero joint accelerations
-        crs_bias_t = (
-        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
-        )
-        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
-        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
-        crs_bias_x = (
-        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
-        )
-        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
-        crs_bias_z = (
-        -crs_bias_t_2*crs_omega_1_t - crs_platform_joint_offset_x*crs_zeta_3_y -
-            2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t - crs_omega_1_t_2*crs_s_3)
-        )
-        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x
-        crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1
-        # (crs-w_1) reciprocal vector 1
-        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
-        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
-        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
-        # (crs-H_a_1) moment of the column's unit force about the platform origin
-        crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4
-        crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5
-        crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3
-        # (crs-w_2) reciprocal vector 2
-        crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x + axis_y_crs_axes3_in_base_x*crs__r1_y
-        crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x + axis_y_crs_axes3_in_base_y*crs__r1_y
-        crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x + axis_y_crs_axes3_in_base_z*crs__r1_y
-        # (crs-H_a_2) moment of the column's unit force about the platform origin
-        crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z - crs_q_in_base_z*crs_w_2_in_base_y
-        crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x - crs_q_in_base_x*crs_w_2_in_base_z
-        crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y - crs_q_in_base_y*crs_w_2_in_base_x
+        crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t
+        crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t
         # (crs-a_p) acceleration of the connection point without its centripetal part
-        crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y
-        crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z
-        crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x
+        crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y
+        crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z
+        crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x
         # (crs-S_ddot) acceleration of the connection point
         crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
         crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
         crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
-        crs_S_ddot_tip_x = (
+        crs_S_ddot_in_axes3_x = (
         axis_x_crs_axes3_x*crs_S_ddot_x + axis_x_crs_axes3_y*crs_S_ddot_y +
             axis_x_crs_axes3_z*crs_S_ddot_z
         )
-        crs_S_ddot_tip_y = (
-        axis_y_crs_axes3_in_base_x*crs_S_ddot_x + axis_y_crs_axes3_in_base_y*crs_S_ddot_y +
-            axis_y_crs_axes3_in_base_z*crs_S_ddot_z
+        crs_S_ddot_in_axes3_y = (
+        axis_y_crs_axes3_x*crs_S_ddot_x + axis_y_crs_axes3_y*crs_S_ddot_y +
+            axis_y_crs_axes3_z*crs_S_ddot_z
         )
-        crs_S_ddot_tip_z = (
-        axis_z_crs_axes3_in_base_x*crs_S_ddot_x + axis_z_crs_axes3_in_base_y*crs_S_ddot_y +
-            axis_z_crs_axes3_in_base_z*crs_S_ddot_z
+        crs_S_ddot_in_axes3_z = (
+        axis_z_crs_axes3_x*crs_S_ddot_x + axis_z_crs_axes3_y*crs_S_ddot_y +
+            axis_z_crs_axes3_z*crs_S_ddot_z
+        )
+        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x + crs_c_3_t*crs_q_2) -
+            crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
+        )
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
+        crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x
+        crs_bias_in_axes3_x = (
+        crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t - crs_bias_t_3*crs_omega_1_t
+        )
+        crs_bias_in_axes3_y = (
+        crs_bias_t*crs_omega_1_in_axes3_x - crs_bias_t_3*crs_omega_1_in_axes3_x
+        )
+        crs_bias_in_axes3_z = (
+        -crs_bias_t_2*crs_omega_1_in_axes3_x - crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
+            2.0*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3)
         )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
-        crs_rel_x = crs_S_ddot_tip_x - crs_bias_x
-        crs_rel_y = crs_S_ddot_tip_y - crs_bias_y
-        crs_rel_z = crs_S_ddot_tip_z - crs_bias_z
+        crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x
+        crs_rel_in_axes3_y = crs_S_ddot_in_axes3_y - crs_bias_in_axes3_y
+        crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z
         # (crs-qdd_1) acceleration of joint 1
-        crs_qdd_1 = crs_rel_z*inv_crs_v_1_z
-        crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3)
-        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
-        crs_acc_3_x = crs_S_ddot_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3
-        crs_acc_3_y = crs_S_ddot_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3
-        crs_acc_3_z = crs_S_ddot_tip_z - crs_g_r1_x
+        crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
+        # (crs-qdd_3) acceleration of joint 3
+        crs_qdd_3_t = (
+        inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x - crs_rel_in_axes3_y*crs_s_3)
+        )
         # (crs-alpha_1) angular acceleration of link 1
-        crs_alpha_1_t = crs_qdd_1*crs_s_3
-        crs_alpha_1_t_2 = crs_c_3*crs_qdd_1
+        crs_alpha_1_in_axes3_x = crs_qdd_1*crs_s_3
+        crs_alpha_1_t = crs_c_3_t*crs_qdd_1
         # (crs-alpha_3) angular acceleration of link 3
-        crs_alpha_3_x = crs_alpha_1_t + crs_zeta_3_x
-        crs_alpha_3_y = crs_zeta_3_y - crs_alpha_1_t_2
+        crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x
+        crs_alpha_3_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_t
         # (crs-B_3) acceleration tensor of link 3
-        crs_B_3_xy = crs_qdd_3 - crs_W_3_xy
-        crs_B_3_yx = -crs_W_3_xy - crs_qdd_3
-        crs_B_3_zx = -crs_alpha_3_y - crs_zeta_3_y
-        crs_B_3_zy = crs_alpha_3_x + crs_zeta_3_x
-        # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        crs_mu_3_x = (
-        crs_B_3_yx*crs_J_3_xz + crs_B_3_zy*crs_Sigma_3_yy + crs_J_3_yz*(crs_W_3_t_2 - crs_W_3_t_3)
-            + crs_Sigma_3_zz*crs_alpha_1_t + crs_acc_3_z*crs_h_3_y - crs_B_3_zx*crs_J_3_xy -
-            crs_acc_3_y*crs_h_3_z
-        )
-        crs_mu_3_y = (
-        crs_B_3_zy*crs_J_3_xy + crs_acc_3_x*crs_h_3_z - crs_B_3_xy*crs_J_3_yz -
-            crs_B_3_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t - crs_W_3_t_3) -
-            crs_Sigma_3_zz*crs_alpha_1_t_2 - crs_acc_3_z*crs_h_3_x
-        )
-        crs_mu_3_z = (
-        crs_B_3_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
-            crs_J_3_xz*crs_alpha_1_t + crs_acc_3_y*crs_h_3_x - crs_B_3_xy*crs_Sigma_3_yy -
-            crs_J_3_yz*crs_alpha_1_t_2 - crs_acc_3_x*crs_h_3_y
-        )
+        crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy + crs_qdd_3_t
+        crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy - crs_qdd_3_t
+        crs_B_3_in_axes3_zx = -crs_alpha_3_in_axes3_y - crs_zeta_3_in_axes3_y
+        crs_B_3_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x
         # (crs-acc_2) acceleration of the reference point of link 2, less gravity
-        crs_acc_2_z = crs_rel_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_y - crs_qdd_3*crs_r_1_t
+        crs_acc_2_in_axes1_z = (
+        crs_rel_in_axes3_x*crs_s_3 - crs_g_in_axes1_z - crs_c_3_t*crs_rel_in_axes3_y -
+            crs_qdd_3_t*crs_r_1_t
+        )
         # (crs-f_2) inertia force of link 2 less its weight
-        crs_f_2_t = crs_acc_2_z*crs_link2_mass
+        crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass
+        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
+        crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
+        crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
+        crs_acc_3_in_axes3_x = (
+        crs_S_ddot_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y - crs_g_in_axes1_z*crs_s_3
+        )
+        crs_acc_3_in_axes3_y = (
+        crs_S_ddot_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z + crs_g_in_axes1_y*crs_s_3
+        )
+        crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_x
+        # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
+        crs_mu_3_t_2 = crs_omega_1_t*crs_omega_1_t
+        crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t
+        crs_mu_3_in_axes3_x = (
+        crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz + crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
+            crs_J_3_in_spec3_yz*(crs_mu_3_t_2 - crs_mu_3_t_3) +
+            crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
+            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
+            crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z
+        )
+        crs_mu_3_in_axes3_y = (
+        crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy + crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z -
+            crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz - crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx
+            - crs_J_3_in_spec3_xz*(crs_mu_3_t - crs_mu_3_t_3) -
+            crs_Sigma_3_in_axes3_zz*crs_alpha_1_t - crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x
+        )
+        crs_mu_3_in_axes3_z = (
+        crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx + crs_J_3_in_spec3_xy*(crs_mu_3_t -
+            crs_mu_3_t_2) + crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x +
+            crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x - crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy
+            - crs_J_3_in_spec3_yz*crs_alpha_1_t - crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y
+        )
         # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        crs_mu_1_z = crs_J_2_xx*crs_qdd_1 - crs_g_r1_x*crs_h_2_y - crs_g_r1_y*crs_h_2_z
+        crs_mu_1_in_axes1_z = (
+        crs_J_2_in_spec1_xx*crs_qdd_1 - crs_g_in_axes1_x*crs_h_2_in_spec1_y -
+            crs_g_in_axes1_y*crs_h_2_in_spec1_z
+        )
         # (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        crs_N_1_z = crs_mu_1_z + crs_mu_3_x*crs_s_3 - crs_c_3*crs_mu_3_y
-        # (crs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        crs_G_t = inv_crs_r_1_t_2*(crs_mu_3_z + crs_f_2_t*crs_r_1_t)
+        crs_N_1_in_axes1_z = (
+        crs_mu_1_in_axes1_z + crs_mu_3_in_axes3_x*crs_s_3 - crs_c_3_t*crs_mu_3_in_axes3_y
+        )
         # (crs-c) leg force on the platform without actuation and without the mass at the connection point
+        crs_c_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z + crs_f_2_in_axes1_z*crs_r_1_t)
+        crs_c_in_axes3_x = (
+        crs_alpha_1_t*crs_h_3_in_spec3_z + crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) -
+            crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_t -
+            crs_f_2_in_axes1_z*crs_s_3
+        )
+        crs_c_in_axes3_y = (
+        crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_c_3_t*crs_f_2_in_axes1_z +
+            crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
+            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t*crs_s_3
+        )
+        crs_c_in_axes3_z = (
+        crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) - crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x -
+            crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y - crs_N_1_in_axes1_z*crs_w_1_in_axes3_z
+        )
         crs_c_x = (
-        crs_alpha_1_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) - crs_B_3_xy*crs_h_3_y -
-            crs_G_t*crs_c_3 - crs_f_2_t*crs_s_3
+        axis_x_crs_axes3_x*crs_c_in_axes3_x + axis_y_crs_axes3_x*crs_c_in_axes3_y +
+            axis_z_crs_axes3_x*crs_c_in_axes3_z
         )
         crs_c_y = (
-        crs_alpha_1_t*crs_h_3_z + crs_c_3*crs_f_2_t + crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) -
-            crs_B_3_yx*crs_h_3_x - crs_G_t*crs_s_3
+        axis_x_crs_axes3_y*crs_c_in_axes3_x + axis_y_crs_axes3_y*crs_c_in_axes3_y +
+            axis_z_crs_axes3_y*crs_c_in_axes3_z
         )
         crs_c_z = (
-        crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_zx*crs_h_3_x - crs_B_3_zy*crs_h_3_y -
-            crs_N_1_z*inv_crs_v_1_z
-        )
-        crs_c_in_base_x = (
-        axis_x_crs_axes3_x*crs_c_x + axis_y_crs_axes3_in_base_x*crs_c_y +
-            axis_z_crs_axes3_in_base_x*crs_c_z
-        )
-        crs_c_in_base_y = (
-        axis_x_crs_axes3_y*crs_c_x + axis_y_crs_axes3_in_base_y*crs_c_y +
-            axis_z_crs_axes3_in_base_y*crs_c_z
-        )
-        crs_c_in_base_z = (
-        axis_x_crs_axes3_z*crs_c_x + axis_y_crs_axes3_in_base_z*crs_c_y +
-            axis_z_crs_axes3_in_base_z*crs_c_z
+        axis_x_crs_axes3_z*crs_c_in_axes3_x + axis_y_crs_axes3_z*crs_c_in_axes3_y +
+            axis_z_crs_axes3_z*crs_c_in_axes3_z
         )
         # (R_a) moment that actuators and external wrench must give
-        crs_R_a_t = crs_c_in_base_z*crs_q_in_base_y - crs_c_in_base_y*crs_q_in_base_z
-        crs_R_a_t_2 = crs_c_in_base_x*crs_q_in_base_z - crs_c_in_base_z*crs_q_in_base_x
-        crs_R_a_t_3 = crs_c_in_base_y*crs_q_in_base_x - crs_c_in_base_x*crs_q_in_base_y
+        crs_R_a_t = crs_c_y*crs_q_z - crs_c_z*crs_q_y
+        crs_R_a_t_2 = crs_c_z*crs_q_x - crs_c_x*crs_q_z
+        crs_R_a_t_3 = crs_c_x*crs_q_y - crs_c_y*crs_q_x
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
+        crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y
+        crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z
+        crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
+        crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y
+        crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
+        crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
-            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            >= 0.0) & (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z)
+            > _TOLERANCE * crs_size))
         )
         sums = m.added(sums, leg, (
-        crs_c_in_base_x, crs_c_in_base_y, crs_c_in_base_z, crs_R_a_t, crs_R_a_t_2,
-            crs_R_a_t_3,
+        crs_c_x, crs_c_y, crs_c_z, crs_R_a_t, crs_R_a_t_2, crs_R_a_t_3,
         ))
-        out_H[_H_crs[0][leg]] = crs_w_1_t_3
-        out_H[_H_crs[1][leg]] = crs_w_1_t_4
-        out_H[_H_crs[2][leg]] = crs_w_1_t_5
+        # (crs-w_1) reciprocal vector 1
+        out_H[_H_crs[0][leg]] = crs_w_1_x
+        out_H[_H_crs[1][leg]] = crs_w_1_y
+        out_H[_H_crs[2][leg]] = crs_w_1_z
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crs[3][leg]] = crs_H_a_1_x
         out_H[_H_crs[4][leg]] = crs_H_a_1_y
         out_H[_H_crs[5][leg]] = crs_H_a_1_z
-        out_H[_H_crs[6][leg]] = crs_w_2_in_base_x
-        out_H[_H_crs[7][leg]] = crs_w_2_in_base_y
-        out_H[_H_crs[8][leg]] = crs_w_2_in_base_z
+        # (crs-w_2) reciprocal vector 2
+        out_H[_H_crs[6][leg]] = crs_w_2_x
+        out_H[_H_crs[7][leg]] = crs_w_2_y
+        out_H[_H_crs[8][leg]] = crs_w_2_z
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_crs[9][leg]] = crs_H_a_2_x
         out_H[_H_crs[10][leg]] = crs_H_a_2_y
         out_H[_H_crs[11][leg]] = crs_H_a_2_z
-    total_crs_x, total_crs_y, total_crs_z, total_crs_x_2, total_crs_y_2, total_crs_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_crs_x, R_a_crs_y, R_a_crs_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_crs_x
-    R_t_y = f_p_y - total_crs_y
-    R_t_z = f_p_z - total_crs_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_crs_x_2
-    R_a_y = mu_p_in_base_y - total_crs_y_2
-    R_a_z = mu_p_in_base_z - total_crs_z_2
+    R_a_x = R_a_crs_x + mu_p_x
+    R_a_y = R_a_crs_y + mu_p_y
+    R_a_z = R_a_crs_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -3252,33 +3420,35 @@ def _run_inverse_kinematics(m, X):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-q_1) displacement of joint 1
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_q_1 = atan2(crs_py_1*crs_root_1*inv_crs_rho2_1, crs_px_1*crs_root_1*inv_crs_rho2_1)
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        # (crs-q_1) displacement of joint 1
-        crs_q_1 = atan2(crs_py_1*crs_root_1*inv_crs_rho2_1, crs_px_1*crs_root_1*inv_crs_rho2_1)
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-q_3) displacement of joint 3
         crs_q_3 = (
         atan2(crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t,
-            crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t)
+            crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t)
         )
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
             >= 0.0))
         )
+        # (crs-q_1) displacement of joint 1
         out_q[_q_crs[0][leg]] = crs_q_1
+        # (crs-q_2) displacement of joint 2
         out_q[_q_crs[1][leg]] = crs_q_2
+        # (crs-q_3) displacement of joint 3
         out_q[_q_crs[2][leg]] = crs_q_3
     return ok, (out_q,)
 
@@ -3347,18 +3517,18 @@ def _run_joint_rates(m, X, V):
             inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -3371,63 +3541,67 @@ def _run_joint_rates(m, X, V):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
-        # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
-        # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
-        )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
-        crs_S_dot_x = t_dot_x + crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
-        crs_S_dot_y = t_dot_y + crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
-        crs_S_dot_z = t_dot_z + crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
-        crs_S_dot_r0_x = (
+        crs_S_dot_x = t_dot_x + crs_q_z*omega_y - crs_q_y*omega_z
+        crs_S_dot_y = t_dot_y + crs_q_x*omega_z - crs_q_z*omega_x
+        crs_S_dot_z = t_dot_z + crs_q_y*omega_x - crs_q_x*omega_y
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
+        )
+        # (crs-qd_1) rate of joint 1
+        crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
             crs_S_dot_z*crs_base_frame_zy
         )
-        crs_S_dot_r0_y = (
+        crs_qd_1_t_2 = (
         crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
             crs_S_dot_z*crs_base_frame_zz
         )
-        # (crs-qd_3) rate of joint 3
-        crs_qd_1 = (crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)/crs_v_1_z
-        crs_qd_3 = (-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)/crs_r_1_t_2
-        crs_qd_3_t = (
+        crs_qd_1 = (crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)/crs_v_1_in_axes3_z
+        # (crs-qd_2) rate of joint 2
+        crs_qd_2_t = (crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)/crs_d_4_in_axes1_z
+        crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t
         )
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
-            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            >= 0.0) & (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z)
+            > _TOLERANCE * crs_size))
         )
+        # (crs-qd_1) rate of joint 1
         out_qd[_qd_crs[0][leg]] = crs_qd_1
-        out_qd[_qd_crs[1][leg]] = crs_qd_3_t
-        out_qd[_qd_crs[2][leg]] = -crs_qd_3
+        # (crs-qd_2) rate of joint 2
+        out_qd[_qd_crs[1][leg]] = crs_qd_2
+        # (crs-qd_3) rate of joint 3
+        out_qd[_qd_crs[2][leg]] = -crs_qd_2_t
     return ok, (out_qd,)
 
 
@@ -3508,18 +3682,18 @@ def _run_joint_accelerations(m, X, V, A):
             inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -3532,131 +3706,141 @@ def _run_joint_accelerations(m, X, V, A):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
-        # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
-        # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
-        )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
-        # (crs-w_1) reciprocal vector 1
-        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
-        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
-        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
-        crs_w_1_t = crs_s_1*crs_s_3
-        crs_w_1_t_2 = crs_c_1*crs_s_3
-        axis_y_crs_axes3_in_base_x = (
-        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_y = (
-        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_z = (
-        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
-        )
-        inv_crs_v_1_z = 1.0/crs_v_1_z
-        # (crs-w_3) reciprocal vector 3
-        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
-        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
-        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
-        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
+        crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
+        crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y
         crs_S_dot_x = crs_S_dot_t + t_dot_x
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
-        crs_S_dot_r0_x = (
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
+        )
+        # (crs-w_1) reciprocal vector 1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        # (crs-qd_1) rate of joint 1
+        crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
             crs_S_dot_z*crs_base_frame_zy
         )
-        crs_S_dot_r0_y = (
+        crs_qd_1_t_2 = (
         crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
             crs_S_dot_z*crs_base_frame_zz
         )
-        # (crs-qd_3) rate of joint 3
-        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
-        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
-        crs_qd_3_t = (
+        crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        # (crs-qd_2) rate of joint 2
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
+        crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_t = crs_qd_1*crs_s_3
-        crs_omega_1_t_2 = crs_c_3*crs_qd_1
-        # (crs-bias) acceleration of the connection point at zero joint accelerations
-        crs_bias_t = (
-        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
-        )
-        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
-        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
-        crs_bias_x = (
-        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
-        )
-        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
-        crs_bias_z = (
-        -crs_bias_t_2*crs_omega_1_t - 2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t -
-            crs_omega_1_t_2*crs_s_3) - crs_omega_1_t*crs_platform_joint_offset_x*crs_qd_3
-        )
+        crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3
+        crs_omega_1_t = crs_c_3_t*crs_qd_1
         # (crs-a_p) acceleration of the connection point without its centripetal part
-        crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y
-        crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z
-        crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x
+        crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y
+        crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z
+        crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x
         # (crs-S_ddot) acceleration of the connection point
         crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
         crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
         crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x + crs_c_3_t*crs_q_2) -
+            crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
+        )
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
+        crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x
+        crs_bias_in_axes3_x = (
+        crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t - crs_bias_t_3*crs_omega_1_t
+        )
+        crs_bias_in_axes3_y = (
+        crs_bias_t*crs_omega_1_in_axes3_x - crs_bias_t_3*crs_omega_1_in_axes3_x
+        )
+        crs_bias_in_axes3_z = (
+        -crs_bias_t_2*crs_omega_1_in_axes3_x - 2.0*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x -
+            crs_omega_1_t*crs_s_3) - crs_omega_1_in_axes3_x*crs_platform_joint_offset_x*crs_qd_2_t
+        )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
-        crs_rel_x = (
-        crs_S_ddot_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y) +
-            crs_S_ddot_y*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z) +
-            crs_S_ddot_z*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x) - crs_bias_x
+        axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1
+        crs_rel_t = crs_s_1*crs_s_3
+        crs_rel_t_2 = -crs_c_1*crs_s_3
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_rel_t + crs_base_frame_xz*crs_rel_t_2 - crs_base_frame_xx*crs_c_3_t
         )
-        crs_rel_y = (
-        axis_y_crs_axes3_in_base_x*crs_S_ddot_x + axis_y_crs_axes3_in_base_y*crs_S_ddot_y +
-            axis_y_crs_axes3_in_base_z*crs_S_ddot_z - crs_bias_y
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_rel_t + crs_base_frame_yz*crs_rel_t_2 - crs_base_frame_yx*crs_c_3_t
         )
-        crs_rel_z = (
-        axis_z_crs_axes3_in_base_x*crs_S_ddot_x + axis_z_crs_axes3_in_base_y*crs_S_ddot_y +
-            axis_z_crs_axes3_in_base_z*crs_S_ddot_z - crs_bias_z
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_rel_t + crs_base_frame_zz*crs_rel_t_2 - crs_base_frame_zx*crs_c_3_t
+        )
+        crs_rel_in_axes3_x = (
+        crs_S_ddot_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y) +
+            crs_S_ddot_y*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z) +
+            crs_S_ddot_z*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x) - crs_bias_in_axes3_x
+        )
+        crs_rel_in_axes3_y = (
+        axis_y_crs_axes3_x*crs_S_ddot_x + axis_y_crs_axes3_y*crs_S_ddot_y +
+            axis_y_crs_axes3_z*crs_S_ddot_z - crs_bias_in_axes3_y
+        )
+        crs_rel_in_axes3_z = (
+        axis_z_crs_axes3_x*crs_S_ddot_x + axis_z_crs_axes3_y*crs_S_ddot_y +
+            axis_z_crs_axes3_z*crs_S_ddot_z - crs_bias_in_axes3_z
         )
         # (crs-qdd_1) acceleration of joint 1
-        crs_qdd_1 = crs_rel_z*inv_crs_v_1_z
-        crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3)
-        crs_qdd_1_t = crs_c_3*crs_rel_y + crs_qdd_3*crs_r_1_t - crs_rel_x*crs_s_3
+        crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
+        # (crs-qdd_2) acceleration of joint 2
+        crs_qdd_2_t = (
+        inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x - crs_rel_in_axes3_y*crs_s_3)
+        )
+        crs_qdd_2 = (
+        crs_rel_in_axes3_x*crs_s_3 - crs_c_3_t*crs_rel_in_axes3_y - crs_qdd_2_t*crs_r_1_t
+        )
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
-            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            >= 0.0) & (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z)
+            > _TOLERANCE * crs_size))
         )
+        # (crs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_crs[0][leg]] = crs_qdd_1
-        out_qdd[_qdd_crs[1][leg]] = -crs_qdd_1_t
-        out_qdd[_qdd_crs[2][leg]] = -crs_qdd_3
+        # (crs-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_crs[1][leg]] = crs_qdd_2
+        # (crs-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_crs[2][leg]] = -crs_qdd_2_t
     return ok, (out_qdd,)
 
 
@@ -3730,29 +3914,30 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        crs_J_2_xx, crs_J_3_xy, crs_J_3_xz, crs_J_3_yz, crs_Sigma_3_xx, crs_Sigma_3_yy,
-            crs_Sigma_3_zz, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
+        crs_J_2_in_spec1_xx, crs_J_3_in_spec3_xy, crs_J_3_in_spec3_xz, crs_J_3_in_spec3_yz,
+            crs_Sigma_3_in_axes3_xx, crs_Sigma_3_in_axes3_yy, crs_Sigma_3_in_axes3_zz,
+            crs_acc_3_t, crs_acc_3_t_2, crs_base_frame_xx, crs_base_frame_xy, crs_base_frame_xz,
             crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz, crs_base_frame_zx,
             crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x, crs_base_point_y,
-            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x, crs_g_r0_y, crs_g_r0_z,
-            crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y, crs_h_3_z, crs_joint3_offset_x,
-            crs_link2_mass, crs_link3_mass, crs_platform_joint_offset_x, crs_platform_point_x,
-            crs_platform_point_y, crs_platform_point_z, crs_size, crs_size_t, crs_size_t_2,
-            inv_crs_size_t,
+            crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_in_axes1_z, crs_h_2_in_spec1_y,
+            crs_h_2_in_spec1_z, crs_h_3_in_spec3_x, crs_h_3_in_spec3_y, crs_h_3_in_spec3_z,
+            crs_joint3_offset_x, crs_link2_mass, crs_link3_mass, crs_platform_joint_offset_x,
+            crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size,
+            crs_size_t, crs_size_t_2, inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -3765,240 +3950,259 @@ def _run_legs(m, X, V, A):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
-        # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
-        # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
-        )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
-        # (crs-w_1) reciprocal vector 1
-        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
-        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
-        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
-        crs_w_1_t = crs_s_1*crs_s_3
-        crs_w_1_t_2 = crs_c_1*crs_s_3
-        axis_y_crs_axes3_in_base_x = (
-        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_y = (
-        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_z = (
-        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
-        )
-        axis_x_crs_axes3_x = (
-        axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y
-        )
-        axis_x_crs_axes3_y = (
-        axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z
-        )
-        axis_x_crs_axes3_z = (
-        axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x
-        )
-        inv_crs_v_1_z = 1.0/crs_v_1_z
-        # (crs-w_3) reciprocal vector 3
-        inv_crs_r_1_t_2 = 1.0/crs_r_1_t_2
-        # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_r_1_t*inv_crs_r_1_t_2
-        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
-        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-S_dot) velocity of the connection point
-        crs_S_dot_t = crs_q_in_base_z*omega_y - crs_q_in_base_y*omega_z
-        crs_S_dot_t_2 = crs_q_in_base_x*omega_z - crs_q_in_base_z*omega_x
-        crs_S_dot_t_3 = crs_q_in_base_y*omega_x - crs_q_in_base_x*omega_y
+        crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z
+        crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x
+        crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y
         crs_S_dot_x = crs_S_dot_t + t_dot_x
         crs_S_dot_y = crs_S_dot_t_2 + t_dot_y
         crs_S_dot_z = crs_S_dot_t_3 + t_dot_z
-        crs_S_dot_r0_x = (
+        # (crs-r_1) from joint 1 to the connection point, along the links
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
+        # (crs-v_1) velocity of the connection point per rate of joint 1
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
+        )
+        # (crs-w_1) reciprocal vector 1
+        axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z
+        crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
+        crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
+        # (crs-w_2) reciprocal vector 2
+        crs_w_2_t = crs_s_1*crs_s_3
+        crs_w_2_t_2 = -crs_c_1*crs_s_3
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t
+        )
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t
+        )
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t
+        )
+        axis_x_crs_axes3_x = (
+        axis_y_crs_axes3_y*axis_z_crs_axes3_z - axis_y_crs_axes3_z*axis_z_crs_axes3_y
+        )
+        axis_x_crs_axes3_y = (
+        axis_y_crs_axes3_z*axis_z_crs_axes3_x - axis_y_crs_axes3_x*axis_z_crs_axes3_z
+        )
+        axis_x_crs_axes3_z = (
+        axis_y_crs_axes3_x*axis_z_crs_axes3_y - axis_y_crs_axes3_y*axis_z_crs_axes3_x
+        )
+        inv_crs_d_4_in_axes1_z = 1.0/crs_d_4_in_axes1_z
+        crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t
+        crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x + axis_y_crs_axes3_x*crs_w_2_in_axes3_y
+        crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x + axis_y_crs_axes3_y*crs_w_2_in_axes3_y
+        crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x + axis_y_crs_axes3_z*crs_w_2_in_axes3_y
+        # (crs-qd_1) rate of joint 1
+        crs_qd_1_t = (
         crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
             crs_S_dot_z*crs_base_frame_zy
         )
-        crs_S_dot_r0_y = (
+        crs_qd_1_t_2 = (
         crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
             crs_S_dot_z*crs_base_frame_zz
         )
-        # (crs-qd_3) rate of joint 3
-        crs_qd_1 = inv_crs_v_1_z*(crs_S_dot_r0_y*crs_s_1 - crs_S_dot_r0_x*crs_c_1)
-        crs_qd_3 = inv_crs_r_1_t_2*(-crs_S_dot_r0_x*crs_s_1 - crs_S_dot_r0_y*crs_c_1)
-        crs_qd_3_t = (
+        crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)
+        # (crs-qd_2) rate of joint 2
+        crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)
+        crs_qd_2 = (
         crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_3*crs_r_1_t
+            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t
         )
         # (crs-omega_1) angular velocity of link 1
-        crs_omega_1_t = crs_qd_1*crs_s_3
-        crs_omega_1_t_2 = crs_c_3*crs_qd_1
-        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        crs_zeta_3_x = crs_omega_1_t_2*crs_qd_3
-        crs_zeta_3_y = crs_omega_1_t*crs_qd_3
+        crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3
+        crs_omega_1_t = crs_c_3_t*crs_qd_1
         # (crs-W_3) centripetal tensor of link 3
-        crs_W_3_t = crs_omega_1_t*crs_omega_1_t
-        crs_W_3_t_2 = crs_omega_1_t_2*crs_omega_1_t_2
-        crs_W_3_t_3 = crs_qd_3*crs_qd_3
-        crs_W_3_xy = crs_omega_1_t*crs_omega_1_t_2
-        # (crs-bias) acceleration of the connection point at zero joint accelerations
-        crs_bias_t = (
-        crs_omega_1_t*(crs_c_3*crs_joint3_offset_x + crs_c_3*crs_q_2) -
-            crs_omega_1_t_2*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
-        )
-        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_3
-        crs_bias_t_3 = crs_omega_1_t_2*crs_platform_joint_offset_x
-        crs_bias_x = (
-        crs_bias_t*crs_omega_1_t_2 - crs_bias_t_2*crs_qd_3 - crs_bias_t_3*crs_omega_1_t_2
-        )
-        crs_bias_y = crs_bias_t*crs_omega_1_t - crs_bias_t_3*crs_omega_1_t
-        crs_bias_z = (
-        -crs_bias_t_2*crs_omega_1_t - crs_platform_joint_offset_x*crs_zeta_3_y -
-            2.0*crs_qd_3_t*(crs_c_3*crs_omega_1_t - crs_omega_1_t_2*crs_s_3)
-        )
-        # (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        crs_g_r1_x = crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x
-        crs_g_r1_y = -crs_c_1*crs_g_r0_y - crs_g_r0_x*crs_s_1
-        # (crs-w_1) reciprocal vector 1
-        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
-        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
-        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
-        # (crs-w_2) reciprocal vector 2
-        crs_w_2_in_base_x = axis_x_crs_axes3_x*crs__r1_x + axis_y_crs_axes3_in_base_x*crs__r1_y
-        crs_w_2_in_base_y = axis_x_crs_axes3_y*crs__r1_x + axis_y_crs_axes3_in_base_y*crs__r1_y
-        crs_w_2_in_base_z = axis_x_crs_axes3_z*crs__r1_x + axis_y_crs_axes3_in_base_z*crs__r1_y
+        crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t
+        crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t
         # (crs-a_p) acceleration of the connection point without its centripetal part
-        crs_a_p_x = t_ddot_x + alpha_y*crs_q_in_base_z - alpha_z*crs_q_in_base_y
-        crs_a_p_y = t_ddot_y + alpha_z*crs_q_in_base_x - alpha_x*crs_q_in_base_z
-        crs_a_p_z = t_ddot_z + alpha_x*crs_q_in_base_y - alpha_y*crs_q_in_base_x
+        crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y
+        crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z
+        crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x
         # (crs-S_ddot) acceleration of the connection point
         crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z
         crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x
         crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y
-        crs_S_ddot_tip_x = (
+        crs_S_ddot_in_axes3_x = (
         axis_x_crs_axes3_x*crs_S_ddot_x + axis_x_crs_axes3_y*crs_S_ddot_y +
             axis_x_crs_axes3_z*crs_S_ddot_z
         )
-        crs_S_ddot_tip_y = (
-        axis_y_crs_axes3_in_base_x*crs_S_ddot_x + axis_y_crs_axes3_in_base_y*crs_S_ddot_y +
-            axis_y_crs_axes3_in_base_z*crs_S_ddot_z
+        crs_S_ddot_in_axes3_y = (
+        axis_y_crs_axes3_x*crs_S_ddot_x + axis_y_crs_axes3_y*crs_S_ddot_y +
+            axis_y_crs_axes3_z*crs_S_ddot_z
         )
-        crs_S_ddot_tip_z = (
-        axis_z_crs_axes3_in_base_x*crs_S_ddot_x + axis_z_crs_axes3_in_base_y*crs_S_ddot_y +
-            axis_z_crs_axes3_in_base_z*crs_S_ddot_z
+        crs_S_ddot_in_axes3_z = (
+        axis_z_crs_axes3_x*crs_S_ddot_x + axis_z_crs_axes3_y*crs_S_ddot_y +
+            axis_z_crs_axes3_z*crs_S_ddot_z
+        )
+        # (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t
+        # (crs-bias) acceleration of the connection point at zero joint accelerations
+        crs_bias_t = (
+        crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x + crs_c_3_t*crs_q_2) -
+            crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3)
+        )
+        crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t
+        crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x
+        crs_bias_in_axes3_x = (
+        crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t - crs_bias_t_3*crs_omega_1_t
+        )
+        crs_bias_in_axes3_y = (
+        crs_bias_t*crs_omega_1_in_axes3_x - crs_bias_t_3*crs_omega_1_in_axes3_x
+        )
+        crs_bias_in_axes3_z = (
+        -crs_bias_t_2*crs_omega_1_in_axes3_x - crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
+            2.0*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3)
         )
         # (crs-rel) acceleration of the connection point left to the joint accelerations
-        crs_rel_x = crs_S_ddot_tip_x - crs_bias_x
-        crs_rel_y = crs_S_ddot_tip_y - crs_bias_y
-        crs_rel_z = crs_S_ddot_tip_z - crs_bias_z
+        crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x
+        crs_rel_in_axes3_y = crs_S_ddot_in_axes3_y - crs_bias_in_axes3_y
+        crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z
         # (crs-qdd_1) acceleration of joint 1
-        crs_qdd_1 = crs_rel_z*inv_crs_v_1_z
-        crs_qdd_3 = inv_crs_r_1_t_2*(-crs_c_3*crs_rel_x - crs_rel_y*crs_s_3)
-        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
-        crs_acc_3_x = crs_S_ddot_tip_x + crs_c_3*crs_g_r1_y - crs_g_r0_z*crs_s_3
-        crs_acc_3_y = crs_S_ddot_tip_y + crs_c_3*crs_g_r0_z + crs_g_r1_y*crs_s_3
-        crs_acc_3_z = crs_S_ddot_tip_z - crs_g_r1_x
+        crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z
+        # (crs-qdd_3) acceleration of joint 3
+        crs_qdd_3_t = (
+        inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x - crs_rel_in_axes3_y*crs_s_3)
+        )
         # (crs-alpha_1) angular acceleration of link 1
-        crs_alpha_1_t = crs_qdd_1*crs_s_3
-        crs_alpha_1_t_2 = crs_c_3*crs_qdd_1
+        crs_alpha_1_in_axes3_x = crs_qdd_1*crs_s_3
+        crs_alpha_1_t = crs_c_3_t*crs_qdd_1
         # (crs-alpha_3) angular acceleration of link 3
-        crs_alpha_3_x = crs_alpha_1_t + crs_zeta_3_x
-        crs_alpha_3_y = crs_zeta_3_y - crs_alpha_1_t_2
+        crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x
+        crs_alpha_3_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_t
         # (crs-B_3) acceleration tensor of link 3
-        crs_B_3_xy = crs_qdd_3 - crs_W_3_xy
-        crs_B_3_yx = -crs_W_3_xy - crs_qdd_3
-        crs_B_3_zx = -crs_alpha_3_y - crs_zeta_3_y
-        crs_B_3_zy = crs_alpha_3_x + crs_zeta_3_x
-        # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        crs_mu_3_x = (
-        crs_B_3_yx*crs_J_3_xz + crs_B_3_zy*crs_Sigma_3_yy + crs_J_3_yz*(crs_W_3_t_2 - crs_W_3_t_3)
-            + crs_Sigma_3_zz*crs_alpha_1_t + crs_acc_3_z*crs_h_3_y - crs_B_3_zx*crs_J_3_xy -
-            crs_acc_3_y*crs_h_3_z
-        )
-        crs_mu_3_y = (
-        crs_B_3_zy*crs_J_3_xy + crs_acc_3_x*crs_h_3_z - crs_B_3_xy*crs_J_3_yz -
-            crs_B_3_zx*crs_Sigma_3_xx - crs_J_3_xz*(crs_W_3_t - crs_W_3_t_3) -
-            crs_Sigma_3_zz*crs_alpha_1_t_2 - crs_acc_3_z*crs_h_3_x
-        )
-        crs_mu_3_z = (
-        crs_B_3_yx*crs_Sigma_3_xx + crs_J_3_xy*(crs_W_3_t - crs_W_3_t_2) +
-            crs_J_3_xz*crs_alpha_1_t + crs_acc_3_y*crs_h_3_x - crs_B_3_xy*crs_Sigma_3_yy -
-            crs_J_3_yz*crs_alpha_1_t_2 - crs_acc_3_x*crs_h_3_y
-        )
+        crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy + crs_qdd_3_t
+        crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy - crs_qdd_3_t
+        crs_B_3_in_axes3_zx = -crs_alpha_3_in_axes3_y - crs_zeta_3_in_axes3_y
+        crs_B_3_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x
         # (crs-acc_2) acceleration of the reference point of link 2, less gravity
-        crs_acc_2_z = crs_rel_x*crs_s_3 - crs_g_r0_z - crs_c_3*crs_rel_y - crs_qdd_3*crs_r_1_t
+        crs_acc_2_in_axes1_z = (
+        crs_rel_in_axes3_x*crs_s_3 - crs_g_in_axes1_z - crs_c_3_t*crs_rel_in_axes3_y -
+            crs_qdd_3_t*crs_r_1_t
+        )
         # (crs-f_2) inertia force of link 2 less its weight
-        crs_f_2_t = crs_acc_2_z*crs_link2_mass
+        crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass
+        # (crs-acc_3) acceleration of the reference point of link 3, less gravity
+        crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1
+        crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1
+        crs_acc_3_in_axes3_x = (
+        crs_S_ddot_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y - crs_g_in_axes1_z*crs_s_3
+        )
+        crs_acc_3_in_axes3_y = (
+        crs_S_ddot_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z + crs_g_in_axes1_y*crs_s_3
+        )
+        crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_x
+        # (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x
+        crs_mu_3_t_2 = crs_omega_1_t*crs_omega_1_t
+        crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t
+        crs_mu_3_in_axes3_x = (
+        crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz + crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
+            crs_J_3_in_spec3_yz*(crs_mu_3_t_2 - crs_mu_3_t_3) +
+            crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
+            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
+            crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z
+        )
+        crs_mu_3_in_axes3_y = (
+        crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy + crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z -
+            crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz - crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx
+            - crs_J_3_in_spec3_xz*(crs_mu_3_t - crs_mu_3_t_3) -
+            crs_Sigma_3_in_axes3_zz*crs_alpha_1_t - crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x
+        )
+        crs_mu_3_in_axes3_z = (
+        crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx + crs_J_3_in_spec3_xy*(crs_mu_3_t -
+            crs_mu_3_t_2) + crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x +
+            crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x - crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy
+            - crs_J_3_in_spec3_yz*crs_alpha_1_t - crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y
+        )
         # (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        crs_mu_1_z = crs_J_2_xx*crs_qdd_1 - crs_g_r1_x*crs_h_2_y - crs_g_r1_y*crs_h_2_z
+        crs_mu_1_in_axes1_z = (
+        crs_J_2_in_spec1_xx*crs_qdd_1 - crs_g_in_axes1_x*crs_h_2_in_spec1_y -
+            crs_g_in_axes1_y*crs_h_2_in_spec1_z
+        )
         # (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        crs_N_1_z = crs_mu_1_z + crs_mu_3_x*crs_s_3 - crs_c_3*crs_mu_3_y
-        # (crs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        crs_G_t = inv_crs_r_1_t_2*(crs_mu_3_z + crs_f_2_t*crs_r_1_t)
+        crs_N_1_in_axes1_z = (
+        crs_mu_1_in_axes1_z + crs_mu_3_in_axes3_x*crs_s_3 - crs_c_3_t*crs_mu_3_in_axes3_y
+        )
         # (crs-c) leg force on the platform without actuation and without the mass at the connection point
-        crs_c_x = (
-        crs_alpha_1_t_2*crs_h_3_z + crs_h_3_x*(crs_W_3_t_2 + crs_W_3_t_3) - crs_B_3_xy*crs_h_3_y -
-            crs_G_t*crs_c_3 - crs_f_2_t*crs_s_3
+        crs_c_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z + crs_f_2_in_axes1_z*crs_r_1_t)
+        crs_c_in_axes3_x = (
+        crs_alpha_1_t*crs_h_3_in_spec3_z + crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) -
+            crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_t -
+            crs_f_2_in_axes1_z*crs_s_3
         )
-        crs_c_y = (
-        crs_alpha_1_t*crs_h_3_z + crs_c_3*crs_f_2_t + crs_h_3_y*(crs_W_3_t + crs_W_3_t_3) -
-            crs_B_3_yx*crs_h_3_x - crs_G_t*crs_s_3
+        crs_c_in_axes3_y = (
+        crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z + crs_c_3_t*crs_f_2_in_axes1_z +
+            crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
+            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t*crs_s_3
         )
-        crs_c_z = (
-        crs_h_3_z*(crs_W_3_t + crs_W_3_t_2) - crs_B_3_zx*crs_h_3_x - crs_B_3_zy*crs_h_3_y -
-            crs_N_1_z*inv_crs_v_1_z
+        crs_c_in_axes3_z = (
+        crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) - crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x -
+            crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y - crs_N_1_in_axes1_z*crs_w_1_in_axes3_z
         )
         # (crs-c_true) leg force on the platform without actuation, the last link's mass included
-        crs_c_true_x = crs_c_x - crs_acc_3_x*crs_link3_mass
-        crs_c_true_y = crs_c_y - crs_acc_3_y*crs_link3_mass
-        crs_c_true_z = crs_c_z - crs_acc_3_z*crs_link3_mass
-        crs_c_true_in_base_x = (
-        axis_x_crs_axes3_x*crs_c_true_x + axis_y_crs_axes3_in_base_x*crs_c_true_y +
-            axis_z_crs_axes3_in_base_x*crs_c_true_z
+        crs_c_true_in_axes3_x = crs_c_in_axes3_x - crs_acc_3_in_axes3_x*crs_link3_mass
+        crs_c_true_in_axes3_y = crs_c_in_axes3_y - crs_acc_3_in_axes3_y*crs_link3_mass
+        crs_c_true_in_axes3_z = crs_c_in_axes3_z - crs_acc_3_in_axes3_z*crs_link3_mass
+        crs_c_true_x = (
+        axis_x_crs_axes3_x*crs_c_true_in_axes3_x + axis_y_crs_axes3_x*crs_c_true_in_axes3_y +
+            axis_z_crs_axes3_x*crs_c_true_in_axes3_z
         )
-        crs_c_true_in_base_y = (
-        axis_x_crs_axes3_y*crs_c_true_x + axis_y_crs_axes3_in_base_y*crs_c_true_y +
-            axis_z_crs_axes3_in_base_y*crs_c_true_z
+        crs_c_true_y = (
+        axis_x_crs_axes3_y*crs_c_true_in_axes3_x + axis_y_crs_axes3_y*crs_c_true_in_axes3_y +
+            axis_z_crs_axes3_y*crs_c_true_in_axes3_z
         )
-        crs_c_true_in_base_z = (
-        axis_x_crs_axes3_z*crs_c_true_x + axis_y_crs_axes3_in_base_z*crs_c_true_y +
-            axis_z_crs_axes3_in_base_z*crs_c_true_z
+        crs_c_true_z = (
+        axis_x_crs_axes3_z*crs_c_true_in_axes3_x + axis_y_crs_axes3_z*crs_c_true_in_axes3_y +
+            axis_z_crs_axes3_z*crs_c_true_in_axes3_z
         )
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
-            >= 0.0) & (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            >= 0.0) & (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z)
+            > _TOLERANCE * crs_size))
         )
-        out_leg_force[_leg_force_crs[0][leg]] = crs_c_true_in_base_x
-        out_leg_force[_leg_force_crs[1][leg]] = crs_c_true_in_base_y
-        out_leg_force[_leg_force_crs[2][leg]] = crs_c_true_in_base_z
-        out_drive[_drive_crs[0][leg]] = crs_w_1_t_3
-        out_drive[_drive_crs[1][leg]] = crs_w_1_t_4
-        out_drive[_drive_crs[2][leg]] = crs_w_1_t_5
-        out_drive[_drive_crs[3][leg]] = crs_w_2_in_base_x
-        out_drive[_drive_crs[4][leg]] = crs_w_2_in_base_y
-        out_drive[_drive_crs[5][leg]] = crs_w_2_in_base_z
+        # (crs-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_crs[0][leg]] = crs_c_true_x
+        out_leg_force[_leg_force_crs[1][leg]] = crs_c_true_y
+        out_leg_force[_leg_force_crs[2][leg]] = crs_c_true_z
+        # (crs-w_1) reciprocal vector 1
+        out_drive[_drive_crs[0][leg]] = crs_w_1_x
+        out_drive[_drive_crs[1][leg]] = crs_w_1_y
+        out_drive[_drive_crs[2][leg]] = crs_w_1_z
+        # (crs-w_2) reciprocal vector 2
+        out_drive[_drive_crs[3][leg]] = crs_w_2_x
+        out_drive[_drive_crs[4][leg]] = crs_w_2_y
+        out_drive[_drive_crs[5][leg]] = crs_w_2_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4006,7 +4210,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4046,21 +4253,23 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        crs_b_r0_x, crs_b_r0_y, crs_b_r0_z, crs_base_frame_xx, crs_base_frame_xy,
+        crs_acc_3_t, crs_acc_3_t_2, crs_b_in_axes1_z, crs_base_frame_xx, crs_base_frame_xy,
             crs_base_frame_xz, crs_base_frame_yx, crs_base_frame_yy, crs_base_frame_yz,
             crs_base_frame_zx, crs_base_frame_zy, crs_base_frame_zz, crs_base_point_x,
-            crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_r0_x,
-            crs_g_r0_y, crs_g_r0_z, crs_h_2_x, crs_h_2_y, crs_h_2_z, crs_h_3_x, crs_h_3_y,
-            crs_h_3_z, crs_joint3_offset_x, crs_link2_mass, crs_platform_joint_offset_x,
-            crs_platform_point_x, crs_platform_point_y, crs_platform_point_z, crs_size_t,
-            crs_size_t_2, inv_crs_size_t,
+            crs_base_point_y, crs_base_point_z, crs_branch_1, crs_branch_2, crs_g_in_axes1_z,
+            crs_h_2_in_spec1_x, crs_h_2_in_spec1_y, crs_h_2_in_spec1_z, crs_h_3_in_spec3_x,
+            crs_h_3_in_spec3_y, crs_h_3_in_spec3_z, crs_joint3_offset_x, crs_link2_mass,
+            crs_platform_joint_offset_x, crs_platform_point_x, crs_platform_point_y,
+            crs_platform_point_z, crs_potential_t, crs_potential_t_2, crs_size_t, crs_size_t_2,
+            inv_crs_size_t,
         ) = k
         # (crs-S) from the base point to the connection point
         crs_S_x = (
@@ -4087,45 +4296,49 @@ def _run_potential(m, X):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (potential) potential energy
-        crs_potential_t = (
-        crs_g_r0_z*(crs_h_2_x + crs_h_3_x*crs_s_3 + crs_link2_mass*(crs_b_r0_z + crs_q_2) -
-            crs_c_3*crs_h_3_y) + (crs_g_r0_y*crs_s_1 - crs_c_1*crs_g_r0_x)*(crs_h_2_z + crs_h_3_z
-            + crs_link2_mass*(crs_b_r0_y*crs_s_1 - crs_b_r0_x*crs_c_1)) + (-crs_c_1*crs_g_r0_y -
-            crs_g_r0_x*crs_s_1)*(crs_link2_mass*(-crs_b_r0_x*crs_s_1 - crs_b_r0_y*crs_c_1) -
-            crs_h_2_y - crs_c_3*crs_h_3_x - crs_h_3_y*crs_s_3)
+        crs_potential_t_3 = (
+        crs_g_in_axes1_z*(crs_h_2_in_spec1_x + crs_h_3_in_spec3_x*crs_s_3 +
+            crs_link2_mass*(crs_b_in_axes1_z + crs_q_2) - crs_c_3_t*crs_h_3_in_spec3_y) +
+            (crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1)*(crs_h_2_in_spec1_z + crs_h_3_in_spec3_z
+            + crs_link2_mass*(crs_c_1*crs_potential_t + crs_potential_t_2*crs_s_1)) +
+            (crs_acc_3_t_2*crs_c_1 -
+            crs_acc_3_t*crs_s_1)*(crs_link2_mass*(crs_c_1*crs_potential_t_2 -
+            crs_potential_t*crs_s_1) - crs_h_2_in_spec1_y - crs_c_3_t*crs_h_3_in_spec3_x -
+            crs_h_3_in_spec3_y*crs_s_3)
         )
         ok = (
         ok & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) & (crs_disc_2
             >= 0.0))
         )
         sums = m.added(sums, leg, (
-        crs_potential_t,
+        crs_potential_t_3,
         ))
-    total_crs, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_crs
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4135,7 +4348,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4178,6 +4391,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4190,18 +4404,18 @@ def _run_condition(m, X):
             inv_crs_size, inv_crs_size_t, inv_crs_size_t_2,
         ) = k
         # (crs-S) from the base point to the connection point
-        crs_q_in_base_x = (
+        crs_q_x = (
         R_xx*crs_platform_point_x + R_xy*crs_platform_point_y + R_xz*crs_platform_point_z
         )
-        crs_q_in_base_y = (
+        crs_q_y = (
         R_yx*crs_platform_point_x + R_yy*crs_platform_point_y + R_yz*crs_platform_point_z
         )
-        crs_q_in_base_z = (
+        crs_q_z = (
         R_zx*crs_platform_point_x + R_zy*crs_platform_point_y + R_zz*crs_platform_point_z
         )
-        crs_S_x = crs_q_in_base_x + t_x - crs_base_point_x
-        crs_S_y = crs_q_in_base_y + t_y - crs_base_point_y
-        crs_S_z = crs_q_in_base_z + t_z - crs_base_point_z
+        crs_S_x = crs_q_x + t_x - crs_base_point_x
+        crs_S_y = crs_q_y + t_y - crs_base_point_y
+        crs_S_z = crs_q_z + t_z - crs_base_point_z
         # (crs-px_1) component along the reference direction
         crs_px_1 = (
         crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy + crs_S_z*crs_base_frame_zy
@@ -4214,127 +4428,129 @@ def _run_condition(m, X):
         crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1
         # (crs-root_1) root, with the sign of the branch
         crs_root_1 = crs_branch_1*sqrt(crs_rho2_1)
+        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_crs_rho2_1 = 1.0/crs_rho2_1
+        crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1
+        # (crs-s_1) sine of the angle of joint 1 from its reference direction
+        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        crs_xi_1_t = (
+        crs_xi_1_in_axes1_z = (
         crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx + crs_S_z*crs_base_frame_zx
         )
         # (crs-from_centre_2) from the centre at zero displacement to the connection point
-        crs_from_centre_2_z = crs_xi_1_t - crs_joint3_offset_x
+        crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x
         # (crs-disc_2) discriminant of the distance equation
         crs_disc_2 = crs_size_t - crs_root_1*crs_root_1
         # (crs-q_2) displacement of joint 2
-        crs_q_2 = crs_from_centre_2_z + crs_branch_2*sqrt(crs_disc_2)
+        crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*sqrt(crs_disc_2)
         # (crs-x_3) from the origin of joint 3 to the connection point
-        crs_x_3_z = crs_xi_1_t - crs_joint3_offset_x - crs_q_2
+        crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2
         # (crs-c_3) cosine of the angle of joint 3 from its reference direction
-        crs_c_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
+        crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t
         # (crs-s_3) sine of the angle of joint 3 from its reference direction
-        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_z*inv_crs_size_t
+        crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t
         # (crs-r_1) from joint 1 to the connection point, along the links
-        crs_r_1_t = crs_c_3*crs_platform_joint_offset_x
-        crs_r_1_t_2 = crs_platform_joint_offset_x*crs_s_3
-        crs_r_1_z = crs_joint3_offset_x + crs_q_2 + crs_r_1_t_2
+        crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x
+        crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3
+        crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2
         # (crs-v_1) velocity of the connection point per rate of joint 1
-        crs_v_1_z = (
-        crs_c_3*(crs_c_3*crs_r_1_t + crs_r_1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3*crs_r_1_z)
+        crs_v_1_in_axes3_z = (
+        crs_c_3_t*(crs_c_3_t*crs_r_1_t + crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3
+            - crs_c_3_t*crs_r_1_in_axes1_z)
         )
-        # (crs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_crs_rho2_1 = 1.0/crs_rho2_1
-        crs_c_1 = crs_py_1*crs_root_1*inv_crs_rho2_1
-        # (crs-s_1) sine of the angle of joint 1 from its reference direction
-        crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1
         # (crs-w_1) reciprocal vector 1
-        axis_z_crs_axes3_in_base_x = crs_base_frame_xz*crs_s_1 - crs_base_frame_xy*crs_c_1
-        axis_z_crs_axes3_in_base_y = crs_base_frame_yz*crs_s_1 - crs_base_frame_yy*crs_c_1
-        axis_z_crs_axes3_in_base_z = crs_base_frame_zz*crs_s_1 - crs_base_frame_zy*crs_c_1
-        crs_w_1_t = crs_s_1*crs_s_3
-        crs_w_1_t_2 = crs_c_1*crs_s_3
-        axis_y_crs_axes3_in_base_x = (
-        crs_base_frame_xy*crs_w_1_t + crs_base_frame_xz*crs_w_1_t_2 - crs_base_frame_xx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_y = (
-        crs_base_frame_yy*crs_w_1_t + crs_base_frame_yz*crs_w_1_t_2 - crs_base_frame_yx*crs_c_3
-        )
-        axis_y_crs_axes3_in_base_z = (
-        crs_base_frame_zy*crs_w_1_t + crs_base_frame_zz*crs_w_1_t_2 - crs_base_frame_zx*crs_c_3
-        )
-        inv_crs_v_1_z = 1.0/crs_v_1_z
+        axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1
+        axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1
+        axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1
+        crs_w_1_in_axes3_z = 1.0/crs_v_1_in_axes3_z
+        crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z
+        crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z
+        crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z
         # (crs-w_2) reciprocal vector 2
-        crs_w_2_t = crs_r_1_t/crs_r_1_t_2
-        crs__r1_x = crs_s_3 + crs_c_3*crs_w_2_t
-        crs__r1_y = crs_s_3*crs_w_2_t - crs_c_3
-        # (crs-w_1) reciprocal vector 1
-        crs_w_1_t_3 = axis_z_crs_axes3_in_base_x*inv_crs_v_1_z
-        crs_w_1_t_4 = axis_z_crs_axes3_in_base_y*inv_crs_v_1_z
-        crs_w_1_t_5 = axis_z_crs_axes3_in_base_z*inv_crs_v_1_z
-        # (crs-H_a_1) moment of the column's unit force about the platform origin
-        crs_H_a_1_x = crs_q_in_base_y*crs_w_1_t_5 - crs_q_in_base_z*crs_w_1_t_4
-        crs_H_a_1_y = crs_q_in_base_z*crs_w_1_t_3 - crs_q_in_base_x*crs_w_1_t_5
-        crs_H_a_1_z = crs_q_in_base_x*crs_w_1_t_4 - crs_q_in_base_y*crs_w_1_t_3
-        # (crs-w_2) reciprocal vector 2
-        crs_w_2_in_base_x = (
-        axis_y_crs_axes3_in_base_x*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_z -
-            axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_y)
+        crs_w_2_t = crs_s_1*crs_s_3
+        crs_w_2_t_2 = -crs_c_1*crs_s_3
+        axis_y_crs_axes3_x = (
+        crs_base_frame_xy*crs_w_2_t + crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t
         )
-        crs_w_2_in_base_y = (
-        axis_y_crs_axes3_in_base_y*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_z*axis_z_crs_axes3_in_base_x -
-            axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_z)
+        axis_y_crs_axes3_y = (
+        crs_base_frame_yy*crs_w_2_t + crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t
         )
-        crs_w_2_in_base_z = (
-        axis_y_crs_axes3_in_base_z*crs__r1_y +
-            crs__r1_x*(axis_y_crs_axes3_in_base_x*axis_z_crs_axes3_in_base_y -
-            axis_y_crs_axes3_in_base_y*axis_z_crs_axes3_in_base_x)
+        axis_y_crs_axes3_z = (
+        crs_base_frame_zy*crs_w_2_t + crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t
         )
-        # (crs-H_a_2) moment of the column's unit force about the platform origin
-        crs_H_a_2_x = crs_q_in_base_y*crs_w_2_in_base_z - crs_q_in_base_z*crs_w_2_in_base_y
-        crs_H_a_2_y = crs_q_in_base_z*crs_w_2_in_base_x - crs_q_in_base_x*crs_w_2_in_base_z
-        crs_H_a_2_z = crs_q_in_base_x*crs_w_2_in_base_y - crs_q_in_base_y*crs_w_2_in_base_x
-        # (spread) rms distance of the platform points from their centroid
-        crs_spread_t = b_c_x - crs_platform_point_x
-        crs_spread_t_2 = b_c_y - crs_platform_point_y
-        crs_spread_t_3 = b_c_z - crs_platform_point_z
-        crs_spread_t_4 = (
-        crs_spread_t*crs_spread_t + crs_spread_t_2*crs_spread_t_2 + crs_spread_t_3*crs_spread_t_3
+        crs_w_2_t_3 = crs_r_1_t/crs_d_4_in_axes1_z
+        crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3
+        crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t
+        crs_w_2_x = (
+        axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*axis_z_crs_axes3_y)
         )
-        # (crs-rho2_1) squared amplitude
-        crs_pivot_size = abs(crs_rho2_1)
-        # (crs-w_1) reciprocal vector 1
-        crs_pivot_size_2 = abs(crs_v_1_z)
-        crs_pivot_size_3 = abs(crs_r_1_t_2)
+        crs_w_2_y = (
+        axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*axis_z_crs_axes3_z)
+        )
+        crs_w_2_z = (
+        axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
+            crs_w_2_in_axes3_x*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*axis_z_crs_axes3_x)
+        )
         # (crs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        crs_pivot_size = abs(crs_rho2_1)
+        crs_pivot_size_2 = abs(crs_v_1_in_axes3_z)
+        crs_pivot_size_3 = abs(crs_d_4_in_axes1_z)
         crs_least_pivots = (
         least(least(sqrt(crs_pivot_size*inv_crs_size_t_2), crs_pivot_size_2*inv_crs_size),
             crs_pivot_size_3*inv_crs_size)
         )
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
+        crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y
+        crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z
+        crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
+        crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y
+        crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z
+        crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x
+        # (spread) rms distance of the platform points from their centroid
+        crs_spread_t = b_c_in_platform_x - crs_platform_point_x
+        crs_spread_t_2 = b_c_in_platform_y - crs_platform_point_y
+        crs_spread_t_3 = b_c_in_platform_z - crs_platform_point_z
+        crs_spread_t_4 = (
+        crs_spread_t*crs_spread_t + crs_spread_t_2*crs_spread_t_2 + crs_spread_t_3*crs_spread_t_3
+        )
         clear = (
         clear & m.every(leg, (abs(crs_rho2_1) > _TOLERANCE * _TOLERANCE * crs_size_t_2) &
-            (abs(crs_v_1_z) > _TOLERANCE * crs_size) & (abs(-crs_r_1_t_2) > _TOLERANCE *
-            crs_size))
+            (abs(crs_v_1_in_axes3_z) > _TOLERANCE * crs_size) & (abs(crs_d_4_in_axes1_z) >
+            _TOLERANCE * crs_size))
         )
         reached = reached & m.every(leg, (crs_disc_2 >= 0.0))
         sums = m.added(sums, leg, (
         crs_spread_t_4,
         ))
-        out_H[_H_crs[0][leg]] = crs_w_1_t_3
-        out_H[_H_crs[1][leg]] = crs_w_1_t_4
-        out_H[_H_crs[2][leg]] = crs_w_1_t_5
+        # (crs-w_1) reciprocal vector 1
+        out_H[_H_crs[0][leg]] = crs_w_1_x
+        out_H[_H_crs[1][leg]] = crs_w_1_y
+        out_H[_H_crs[2][leg]] = crs_w_1_z
+        # (crs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_crs[3][leg]] = crs_H_a_1_x
         out_H[_H_crs[4][leg]] = crs_H_a_1_y
         out_H[_H_crs[5][leg]] = crs_H_a_1_z
-        out_H[_H_crs[6][leg]] = crs_w_2_in_base_x
-        out_H[_H_crs[7][leg]] = crs_w_2_in_base_y
-        out_H[_H_crs[8][leg]] = crs_w_2_in_base_z
+        # (crs-w_2) reciprocal vector 2
+        out_H[_H_crs[6][leg]] = crs_w_2_x
+        out_H[_H_crs[7][leg]] = crs_w_2_y
+        out_H[_H_crs[8][leg]] = crs_w_2_z
+        # (crs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_crs[9][leg]] = crs_H_a_2_x
         out_H[_H_crs[10][leg]] = crs_H_a_2_y
         out_H[_H_crs[11][leg]] = crs_H_a_2_z
+        # (crs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_crs[0][leg]] = crs_least_pivots
         out_reach[_reach_crs[0][leg]] = crs_disc_2
-    total_crs, = sums
+    spread_crs, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_crs)
+    spread = sqrt(spread_crs)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

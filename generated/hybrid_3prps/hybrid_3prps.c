@@ -493,19 +493,19 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_prps = 0;
-    real total_prps_x = 0;
-    real total_prps_y = 0;
-    real total_prps_z = 0;
-    real total_prps_xx = 0;
-    real total_prps_xy = 0;
-    real total_prps_xz = 0;
-    real total_prps_yy = 0;
-    real total_prps_yz = 0;
-    real total_prps_zz = 0;
-    real total_prps_x_2 = 0;
-    real total_prps_y_2 = 0;
-    real total_prps_z_2 = 0;
+    real m_star_prps = 0;
+    real h_star_prps_in_platform_x = 0;
+    real h_star_prps_in_platform_y = 0;
+    real h_star_prps_in_platform_z = 0;
+    real J_star_prps_in_platform_xx = 0;
+    real J_star_prps_in_platform_xy = 0;
+    real J_star_prps_in_platform_xz = 0;
+    real J_star_prps_in_platform_yy = 0;
+    real J_star_prps_in_platform_yz = 0;
+    real J_star_prps_in_platform_zz = 0;
+    real b_c_prps_in_platform_x = 0;
+    real b_c_prps_in_platform_y = 0;
+    real b_c_prps_in_platform_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -576,33 +576,43 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real prps_link3_inertia_zz = params->prps_link3_inertia[own][2][2];
         static const signed char signs_prps_branch_2[] = {1, 1, 1};
         const real prps_branch_2 = signs_prps_branch_2[own];
+        /* (prps-h_1) first moment of link 1 about the origin of link 1 */
+        const real prps_h_1_in_spec0_x = prps_link1_centre_of_mass_x*prps_link1_mass;
+        const real prps_h_1_in_spec0_y = prps_link1_centre_of_mass_y*prps_link1_mass;
+        const real prps_h_1_in_spec0_z = prps_link1_centre_of_mass_z*prps_link1_mass;
+        /* (prps-h_2) first moment of link 2 about the origin of link 2 */
+        const real prps_h_2_in_spec2_x = prps_link2_centre_of_mass_x*prps_link2_mass;
+        const real prps_h_2_in_spec2_y = prps_link2_centre_of_mass_y*prps_link2_mass;
+        const real prps_h_2_in_spec2_z = prps_link2_centre_of_mass_z*prps_link2_mass;
         /* (prps-h_3) first moment of link 3 about the connection point */
-        const real prps_h_3_x = prps_link3_centre_of_mass_x*prps_link3_mass;
-        const real prps_h_3_y = prps_link3_centre_of_mass_y*prps_link3_mass;
-        const real prps_h_3_z = prps_link3_centre_of_mass_z*prps_link3_mass;
-        /* (prps-J_2) inertia tensor of link 2 about the origin of link 2 */
-        const real prps_J_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z;
-        const real prps_J_2_t_2 = prps_J_2_t +
-            prps_link2_centre_of_mass_x*prps_link2_centre_of_mass_x +
-            prps_link2_centre_of_mass_y*prps_link2_centre_of_mass_y;
-        /* (prps-J_3) inertia tensor of link 3 about the connection point */
-        const real prps_J_3_t = prps_link3_centre_of_mass_z*prps_link3_centre_of_mass_z;
-        const real prps_J_3_t_2 = prps_J_3_t +
-            prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
-            prps_link3_centre_of_mass_y*prps_link3_centre_of_mass_y;
+        const real prps_h_3_in_spec2_x = prps_link3_centre_of_mass_x*prps_link3_mass;
+        const real prps_h_3_in_spec2_y = prps_link3_centre_of_mass_y*prps_link3_mass;
+        const real prps_h_3_in_spec2_z = prps_link3_centre_of_mass_z*prps_link3_mass;
+        /* (prps-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prps_g_in_axes0_z = gravity_x*prps_base_frame_xz + gravity_y*prps_base_frame_yz
+            + gravity_z*prps_base_frame_zz;
+        /* (prps-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real prps_g_in_axes0_x = gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx
+            + gravity_z*prps_base_frame_zx;
+        const real prps_g_in_axes0_y = gravity_x*prps_base_frame_xy + gravity_y*prps_base_frame_yy
+            + gravity_z*prps_base_frame_zy;
         /* (prps-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real prps_Jc_2_zz = prps_link2_inertia_zz + prps_link3_inertia_zz -
-            prps_link2_mass*(prps_J_2_t - prps_J_2_t_2) - prps_link3_mass*(prps_J_3_t -
-            prps_J_3_t_2);
-        /* (prps-h_2) first moment of link 2 about the origin of link 2 */
-        const real prps_h_2_x = prps_link2_centre_of_mass_x*prps_link2_mass;
-        const real prps_h_2_y = prps_link2_centre_of_mass_y*prps_link2_mass;
-        const real prps_h_2_z = prps_link2_centre_of_mass_z*prps_link2_mass;
+        const real prps_Jc_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z;
+        const real prps_Jc_2_t_2 = prps_Jc_2_t +
+            prps_link2_centre_of_mass_x*prps_link2_centre_of_mass_x +
+            prps_link2_centre_of_mass_y*prps_link2_centre_of_mass_y;
+        const real prps_Jc_2_t_3 = prps_link3_centre_of_mass_z*prps_link3_centre_of_mass_z;
+        const real prps_Jc_2_t_4 = prps_Jc_2_t_3 +
+            prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
+            prps_link3_centre_of_mass_y*prps_link3_centre_of_mass_y;
+        const real prps_Jc_2_in_axes2_zz = prps_link2_inertia_zz + prps_link3_inertia_zz -
+            prps_link2_mass*(prps_Jc_2_t - prps_Jc_2_t_2) - prps_link3_mass*(prps_Jc_2_t_3 -
+            prps_Jc_2_t_4);
         /* (prps-P_c_1) force that accelerates joint 1, per unit */
-        const real prps_P_c_1_t = prps_link1_mass + prps_link2_mass;
+        const real prps_P_c_1_in_axes0_z = prps_link1_mass + prps_link2_mass;
         /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prps_Q_t = R(0.5)*prps_P_c_1_t;
+        const real prps_Q_t = R(0.5)*prps_P_c_1_in_axes0_z;
         const real prps_Q_t_2 = prps_Q_t*prps_base_frame_xz;
         const real prps_Q_t_3 = prps_Q_t*prps_base_frame_yz;
         const real prps_Q_t_4 = prps_Q_t*prps_base_frame_zz;
@@ -630,30 +640,18 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real prps_J_star_t_8 = prps_link3_mass*(prps_J_star_t_2 - prps_J_star_t_4);
         const real prps_J_star_t_9 = prps_link3_mass*prps_platform_point_y*prps_platform_point_z;
         const real prps_J_star_t_10 = prps_link3_mass*(prps_J_star_t_3 - prps_J_star_t_4);
-        /* (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prps_g_r0_x = gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx +
-            gravity_z*prps_base_frame_zx;
-        const real prps_g_r0_y = gravity_x*prps_base_frame_xy + gravity_y*prps_base_frame_yy +
-            gravity_z*prps_base_frame_zy;
-        const real prps_g_r0_z = gravity_x*prps_base_frame_xz + gravity_y*prps_base_frame_yz +
-            gravity_z*prps_base_frame_zz;
-        /* (prps-h_1) first moment of link 1 about the origin of link 1 */
-        const real prps_h_1_x = prps_link1_centre_of_mass_x*prps_link1_mass;
-        const real prps_h_1_y = prps_link1_centre_of_mass_y*prps_link1_mass;
-        const real prps_h_1_z = prps_link1_centre_of_mass_z*prps_link1_mass;
         /* (potential) potential energy */
-        const real prps_b_r0_x = prps_base_frame_xx*prps_base_point_x +
+        const real prps_b_in_axes0_x = prps_base_frame_xx*prps_base_point_x +
             prps_base_frame_yx*prps_base_point_y + prps_base_frame_zx*prps_base_point_z;
-        const real prps_b_r0_y = prps_base_frame_xy*prps_base_point_x +
+        const real prps_b_in_axes0_y = prps_base_frame_xy*prps_base_point_x +
             prps_base_frame_yy*prps_base_point_y + prps_base_frame_zy*prps_base_point_z;
-        const real prps_b_r0_z = prps_base_frame_xz*prps_base_point_x +
+        const real prps_b_in_axes0_z = prps_base_frame_xz*prps_base_point_x +
             prps_base_frame_yz*prps_base_point_y + prps_base_frame_zz*prps_base_point_z;
-        const real prps_potential_t = prps_b_r0_x*prps_link1_mass;
-        const real prps_potential_t_2 = prps_b_r0_y*prps_link1_mass;
-        const real prps_potential_t_3 = prps_b_r0_x*prps_link2_mass;
-        const real prps_potential_t_4 = prps_b_r0_y*prps_link2_mass;
-        model->prps_Jc_2_zz[leg] = prps_Jc_2_zz;
+        const real prps_potential_t = prps_b_in_axes0_x*prps_link1_mass;
+        const real prps_potential_t_2 = prps_b_in_axes0_y*prps_link1_mass;
+        const real prps_potential_t_3 = prps_b_in_axes0_x*prps_link2_mass;
+        const real prps_potential_t_4 = prps_b_in_axes0_y*prps_link2_mass;
+        model->prps_Jc_2_in_axes2_zz[leg] = prps_Jc_2_in_axes2_zz;
         model->prps_Q_t_10[leg] = prps_Q_t_10;
         model->prps_Q_t_11[leg] = prps_Q_t_11;
         model->prps_Q_t_12[leg] = prps_Q_t_12;
@@ -663,7 +661,7 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         model->prps_Q_t_7[leg] = prps_Q_t_7;
         model->prps_Q_t_8[leg] = prps_Q_t_8;
         model->prps_Q_t_9[leg] = prps_Q_t_9;
-        model->prps_b_r0_z[leg] = prps_b_r0_z;
+        model->prps_b_in_axes0_z[leg] = prps_b_in_axes0_z;
         model->prps_base_frame_xx[leg] = prps_base_frame_xx;
         model->prps_base_frame_xy[leg] = prps_base_frame_xy;
         model->prps_base_frame_xz[leg] = prps_base_frame_xz;
@@ -677,18 +675,18 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         model->prps_base_point_y[leg] = prps_base_point_y;
         model->prps_base_point_z[leg] = prps_base_point_z;
         model->prps_branch_2[leg] = prps_branch_2;
-        model->prps_g_r0_x[leg] = prps_g_r0_x;
-        model->prps_g_r0_y[leg] = prps_g_r0_y;
-        model->prps_g_r0_z[leg] = prps_g_r0_z;
-        model->prps_h_1_x[leg] = prps_h_1_x;
-        model->prps_h_1_y[leg] = prps_h_1_y;
-        model->prps_h_1_z[leg] = prps_h_1_z;
-        model->prps_h_2_x[leg] = prps_h_2_x;
-        model->prps_h_2_y[leg] = prps_h_2_y;
-        model->prps_h_2_z[leg] = prps_h_2_z;
-        model->prps_h_3_x[leg] = prps_h_3_x;
-        model->prps_h_3_y[leg] = prps_h_3_y;
-        model->prps_h_3_z[leg] = prps_h_3_z;
+        model->prps_g_in_axes0_x[leg] = prps_g_in_axes0_x;
+        model->prps_g_in_axes0_y[leg] = prps_g_in_axes0_y;
+        model->prps_g_in_axes0_z[leg] = prps_g_in_axes0_z;
+        model->prps_h_1_in_spec0_x[leg] = prps_h_1_in_spec0_x;
+        model->prps_h_1_in_spec0_y[leg] = prps_h_1_in_spec0_y;
+        model->prps_h_1_in_spec0_z[leg] = prps_h_1_in_spec0_z;
+        model->prps_h_2_in_spec2_x[leg] = prps_h_2_in_spec2_x;
+        model->prps_h_2_in_spec2_y[leg] = prps_h_2_in_spec2_y;
+        model->prps_h_2_in_spec2_z[leg] = prps_h_2_in_spec2_z;
+        model->prps_h_3_in_spec2_x[leg] = prps_h_3_in_spec2_x;
+        model->prps_h_3_in_spec2_y[leg] = prps_h_3_in_spec2_y;
+        model->prps_h_3_in_spec2_z[leg] = prps_h_3_in_spec2_z;
         model->prps_link1_mass[leg] = prps_link1_mass;
         model->prps_link2_mass[leg] = prps_link2_mass;
         model->prps_link3_mass[leg] = prps_link3_mass;
@@ -699,62 +697,68 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         model->prps_potential_t_2[leg] = prps_potential_t_2;
         model->prps_potential_t_3[leg] = prps_potential_t_3;
         model->prps_potential_t_4[leg] = prps_potential_t_4;
-        total_prps += leg < 3 ? prps_link3_mass : 0;
-        total_prps_x += leg < 3 ? prps_h_star_t : 0;
-        total_prps_y += leg < 3 ? prps_h_star_t_2 : 0;
-        total_prps_z += leg < 3 ? prps_h_star_t_3 : 0;
-        total_prps_xx += leg < 3 ? prps_J_star_t_5 : 0;
-        total_prps_xy += leg < 3 ? prps_J_star_t_6 : 0;
-        total_prps_xz += leg < 3 ? prps_J_star_t_7 : 0;
-        total_prps_yy += leg < 3 ? prps_J_star_t_8 : 0;
-        total_prps_yz += leg < 3 ? prps_J_star_t_9 : 0;
-        total_prps_zz += leg < 3 ? prps_J_star_t_10 : 0;
-        total_prps_x_2 += leg < 3 ? prps_platform_point_x : 0;
-        total_prps_y_2 += leg < 3 ? prps_platform_point_y : 0;
-        total_prps_z_2 += leg < 3 ? prps_platform_point_z : 0;
+        m_star_prps += leg < 3 ? prps_link3_mass : 0;
+        h_star_prps_in_platform_x += leg < 3 ? prps_h_star_t : 0;
+        h_star_prps_in_platform_y += leg < 3 ? prps_h_star_t_2 : 0;
+        h_star_prps_in_platform_z += leg < 3 ? prps_h_star_t_3 : 0;
+        J_star_prps_in_platform_xx += leg < 3 ? -prps_J_star_t_5 : 0;
+        J_star_prps_in_platform_xy += leg < 3 ? -prps_J_star_t_6 : 0;
+        J_star_prps_in_platform_xz += leg < 3 ? -prps_J_star_t_7 : 0;
+        J_star_prps_in_platform_yy += leg < 3 ? -prps_J_star_t_8 : 0;
+        J_star_prps_in_platform_yz += leg < 3 ? -prps_J_star_t_9 : 0;
+        J_star_prps_in_platform_zz += leg < 3 ? -prps_J_star_t_10 : 0;
+        b_c_prps_in_platform_x += leg < 3 ? prps_platform_point_x : 0;
+        b_c_prps_in_platform_y += leg < 3 ? prps_platform_point_y : 0;
+        b_c_prps_in_platform_z += leg < 3 ? prps_platform_point_z : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_prps;
+    const real m_star = m_star_prps + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_prps_x;
-    const real h_star_y = h_star_t_2 + total_prps_y;
-    const real h_star_z = h_star_t_3 + total_prps_z;
+    const real h_star_in_platform_x = h_star_prps_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_prps_in_platform_y + h_star_t_2;
+    const real h_star_in_platform_z = h_star_prps_in_platform_z + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_prps_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_prps_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_prps_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_prps_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_prps_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_prps_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_prps_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_prps_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_prps_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_prps_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_prps_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_prps_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_prps_x_2;
-    const real b_c_y = R(0.3333333333333333)*total_prps_y_2;
-    const real b_c_z = R(0.3333333333333333)*total_prps_z_2;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prps_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prps_in_platform_y;
+    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_prps_in_platform_z;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->m_star = m_star;
     return OK;
 }
@@ -1323,41 +1327,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1368,26 +1378,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1406,21 +1425,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1438,265 +1457,262 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t w, size_t leg, size_t l
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
-        /* (prps-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real prps_h_3_y = m->prps_h_3_y[i];
-        const real prps_d_phi_3_t = inv_prps_root_2*prps_h_3_y;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
-        /* (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prps_Jc_2_zz = m->prps_Jc_2_zz[i];
-        const real prps_h_3_x = m->prps_h_3_x[i];
-        const real prps_d_Gamma_2_y = prps_h_3_x + inv_prps_root_2*prps_Jc_2_zz;
-        /* (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prps_d_c_yy = -inv_prps_root_2*prps_d_Gamma_2_y - inv_prps_root_2*prps_h_3_x;
-        /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 -
-            prps_base_frame_xx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 -
-            prps_base_frame_yx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 -
-            prps_base_frame_zx*prps_s_2;
-        const real axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 +
-            prps_base_frame_xy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 +
-            prps_base_frame_yy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 +
-            prps_base_frame_zy*prps_s_2;
-        const real prps_Q_t = R(0.5)*prps_d_c_yy;
-        const real prps_Q_t_2 = axis_x_prps_axes2_in_base_x*prps_d_phi_3_t +
-            axis_y_prps_axes2_in_base_x*prps_Q_t;
-        const real prps_Q_t_3 = axis_x_prps_axes2_in_base_y*prps_d_phi_3_t +
-            axis_y_prps_axes2_in_base_y*prps_Q_t;
-        const real prps_Q_t_4 = axis_x_prps_axes2_in_base_z*prps_d_phi_3_t +
-            axis_y_prps_axes2_in_base_z*prps_Q_t;
-        const real prps_Q_t_5 = m->prps_Q_t_5[i];
-        const real prps_Q_t_14 = axis_y_prps_axes2_in_base_x*prps_Q_t_2 - prps_Q_t_5;
-        const real prps_Q_t_15 = 2*prps_Q_t_14;
-        const real prps_Q_t_6 = m->prps_Q_t_6[i];
-        const real prps_Q_t_7 = m->prps_Q_t_7[i];
-        const real prps_Q_t_16 = axis_y_prps_axes2_in_base_x*prps_Q_t_3 +
-            axis_y_prps_axes2_in_base_y*prps_Q_t_2 - prps_Q_t_6 - prps_Q_t_7;
-        const real prps_Q_t_8 = m->prps_Q_t_8[i];
-        const real prps_Q_t_9 = m->prps_Q_t_9[i];
-        const real prps_Q_t_17 = axis_y_prps_axes2_in_base_x*prps_Q_t_4 +
-            axis_y_prps_axes2_in_base_z*prps_Q_t_2 - prps_Q_t_8 - prps_Q_t_9;
-        const real prps_Q_t_10 = m->prps_Q_t_10[i];
-        const real prps_Q_t_18 = axis_y_prps_axes2_in_base_y*prps_Q_t_3 - prps_Q_t_10;
-        const real prps_Q_t_19 = 2*prps_Q_t_18;
-        const real prps_Q_t_11 = m->prps_Q_t_11[i];
-        const real prps_Q_t_12 = m->prps_Q_t_12[i];
-        const real prps_Q_t_20 = axis_y_prps_axes2_in_base_y*prps_Q_t_4 +
-            axis_y_prps_axes2_in_base_z*prps_Q_t_3 - prps_Q_t_11 - prps_Q_t_12;
-        const real prps_Q_t_13 = m->prps_Q_t_13[i];
-        const real prps_Q_t_21 = axis_y_prps_axes2_in_base_z*prps_Q_t_4 - prps_Q_t_13;
-        const real prps_Q_t_22 = 2*prps_Q_t_21;
-        /* (M_ta) coupling block of M */
-        const real prps_M_ta_t = prps_Q_t_16*prps_q_in_base_z;
-        const real prps_M_ta_t_2 = prps_Q_t_17*prps_q_in_base_y;
-        const real prps_M_ta_t_3 = prps_M_ta_t - prps_M_ta_t_2;
-        const real prps_M_ta_t_4 = prps_Q_t_15*prps_q_in_base_z - prps_Q_t_17*prps_q_in_base_x;
-        const real prps_M_ta_t_5 = prps_Q_t_15*prps_q_in_base_y - prps_Q_t_16*prps_q_in_base_x;
-        const real prps_M_ta_t_6 = prps_Q_t_19*prps_q_in_base_z - prps_Q_t_20*prps_q_in_base_y;
-        const real prps_M_ta_t_7 = prps_Q_t_20*prps_q_in_base_x;
-        const real prps_M_ta_t_8 = prps_M_ta_t - prps_M_ta_t_7;
-        const real prps_M_ta_t_9 = prps_Q_t_16*prps_q_in_base_y - prps_Q_t_19*prps_q_in_base_x;
-        const real prps_M_ta_t_10 = prps_Q_t_20*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_y;
-        const real prps_M_ta_t_11 = prps_Q_t_17*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_x;
-        const real prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real prps_M_aa_t = prps_M_ta_t_6*prps_q_in_base_z - prps_M_ta_t_10*prps_q_in_base_y;
-        const real prps_M_aa_t_2 = prps_M_ta_t_8*prps_q_in_base_z -
-            prps_M_ta_t_11*prps_q_in_base_y;
-        const real prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_in_base_y +
-            prps_M_ta_t_9*prps_q_in_base_z;
-        const real prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_in_base_z -
-            prps_M_ta_t_11*prps_q_in_base_x;
-        const real prps_M_aa_t_5 = prps_M_ta_t_12*prps_q_in_base_x +
-            prps_M_ta_t_5*prps_q_in_base_z;
-        const real prps_M_aa_t_6 = prps_M_ta_t_5*prps_q_in_base_y -
-            prps_M_ta_t_9*prps_q_in_base_x;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
         /* (prps-S_dot) velocity of the connection point */
+        const real axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 +
+            prps_base_frame_xy*prps_s_2;
+        const real axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 +
+            prps_base_frame_yy*prps_s_2;
+        const real axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 +
+            prps_base_frame_zy*prps_s_2;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y;
+        const real prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y;
         const real omega_x = s[15*w + j];
-        const real prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z;
-        const real prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x;
+        const real prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z;
+        const real prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x;
         const real t_dot_x = s[12*w + j];
         const real prps_S_dot_x = prps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prps_S_dot_y = prps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prps_S_dot_z = prps_S_dot_t_3 + t_dot_z;
-        const real prps_S_dot_tip_x = axis_x_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_x_prps_axes2_in_base_y*prps_S_dot_y + axis_x_prps_axes2_in_base_z*prps_S_dot_z;
+        const real prps_S_dot_in_axes2_x = axis_x_prps_axes2_x*prps_S_dot_x +
+            axis_x_prps_axes2_y*prps_S_dot_y + axis_x_prps_axes2_z*prps_S_dot_z;
         /* (prps-qd_2) rate of joint 2 */
-        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z);
+        const real axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 -
+            prps_base_frame_xx*prps_s_2;
+        const real axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 -
+            prps_base_frame_yx*prps_s_2;
+        const real axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 -
+            prps_base_frame_zx*prps_s_2;
+        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x +
+            axis_y_prps_axes2_y*prps_S_dot_y + axis_y_prps_axes2_z*prps_S_dot_z);
+        /* (prps-W_2) centripetal tensor of link 2 */
+        const real prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2;
         /* (prps-u_1) centripetal acceleration of the connection point */
         const real prps_u_1_x = omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2;
         const real prps_u_1_y = omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3;
         const real prps_u_1_z = omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t;
-        /* (prps-W_2) centripetal tensor of link 2 */
-        const real prps_W_2_t = prps_qd_2*prps_qd_2;
-        /* (prps-u_1) centripetal acceleration of the connection point */
-        const real prps_u_1_tip_y = axis_y_prps_axes2_in_base_x*prps_u_1_x +
-            axis_y_prps_axes2_in_base_y*prps_u_1_y + axis_y_prps_axes2_in_base_z*prps_u_1_z;
+        const real prps_u_1_in_axes2_y = axis_y_prps_axes2_x*prps_u_1_x +
+            axis_y_prps_axes2_y*prps_u_1_y + axis_y_prps_axes2_z*prps_u_1_z;
         /* (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real prps_rel_o_y = prps_u_1_tip_y - 2*prps_S_dot_tip_x*prps_qd_2;
+        const real prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y -
+            2*prps_S_dot_in_axes2_x*prps_qd_2;
         /* (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real prps_qdd_2_o = inv_prps_root_2*prps_rel_o_y;
-        /* (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real prps_phi_3_o_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2_o;
-        /* (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prps_g_r0_x = m->prps_g_r0_x[i];
-        const real prps_g_r0_y = m->prps_g_r0_y[i];
-        const real prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2;
-        const real prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2;
+        const real prps_qdd_2_o = inv_prps_root_2*prps_rel_o_in_axes2_y;
+        /* (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_g_r0_z = m->prps_g_r0_z[i];
-        const real prps_acc_2_o_z = prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y
-            + prps_base_frame_zz*prps_u_1_z - prps_g_r0_z;
+        const real prps_g_in_axes0_z = m->prps_g_in_axes0_z[i];
+        const real prps_acc_1_o_in_axes0_z = prps_base_frame_xz*prps_u_1_x +
+            prps_base_frame_yz*prps_u_1_y + prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z;
         /* (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real prps_acc_3_o_x = axis_x_prps_axes2_in_base_x*prps_u_1_x +
-            axis_x_prps_axes2_in_base_y*prps_u_1_y + axis_x_prps_axes2_in_base_z*prps_u_1_z -
-            prps_g_r1_x;
-        const real prps_acc_3_o_y = prps_u_1_tip_y - prps_g_r1_y;
+        const real prps_g_in_axes0_x = m->prps_g_in_axes0_x[i];
+        const real prps_g_in_axes0_y = m->prps_g_in_axes0_y[i];
+        const real prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2;
+        const real prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2;
+        const real prps_acc_3_o_in_axes2_x = axis_x_prps_axes2_x*prps_u_1_x +
+            axis_x_prps_axes2_y*prps_u_1_y + axis_x_prps_axes2_z*prps_u_1_z - prps_g_in_axes2_x;
+        const real prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - prps_g_in_axes2_y;
+        /* (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real prps_h_3_in_spec2_x = m->prps_h_3_in_spec2_x[i];
+        const real prps_h_3_in_spec2_y = m->prps_h_3_in_spec2_y[i];
+        const real prps_phi_3_o_in_axes2_x = prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x -
+            prps_h_3_in_spec2_y*prps_qdd_2_o;
         /* (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real prps_h_2_x = m->prps_h_2_x[i];
-        const real prps_h_2_y = m->prps_h_2_y[i];
-        const real prps_mu_2_o_z = prps_Jc_2_zz*prps_qdd_2_o + prps_acc_3_o_y*prps_h_3_x +
-            prps_g_r1_x*prps_h_2_y - prps_acc_3_o_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x;
+        const real prps_Jc_2_in_axes2_zz = m->prps_Jc_2_in_axes2_zz[i];
+        const real prps_h_2_in_spec2_x = m->prps_h_2_in_spec2_x[i];
+        const real prps_h_2_in_spec2_y = m->prps_h_2_in_spec2_y[i];
+        const real prps_mu_2_o_in_axes2_z = prps_Jc_2_in_axes2_zz*prps_qdd_2_o +
+            prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x + prps_g_in_axes2_x*prps_h_2_in_spec2_y -
+            prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y - prps_g_in_axes2_y*prps_h_2_in_spec2_x;
+        /* (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x +
+            inv_prps_root_2*prps_Jc_2_in_axes2_zz;
         /* (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real prps_link1_mass = m->prps_link1_mass[i];
         const real prps_link2_mass = m->prps_link2_mass[i];
-        const real prps_T_1_o_z = prps_acc_2_o_z*prps_link1_mass + prps_acc_2_o_z*prps_link2_mass;
+        const real prps_T_1_o_in_axes0_z = prps_acc_1_o_in_axes0_z*prps_link1_mass +
+            prps_acc_1_o_in_axes0_z*prps_link2_mass;
+        /* (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real prps_d_c_in_axes2_xy = inv_prps_root_2*prps_h_3_in_spec2_y;
+        const real prps_d_c_in_axes2_yy = -inv_prps_root_2*prps_d_Gamma_2_in_axes2_y -
+            inv_prps_root_2*prps_h_3_in_spec2_x;
         /* (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real prps_c_o_y = prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_o_z -
-            prps_h_3_x*prps_qdd_2_o;
+        const real prps_c_o_in_axes2_y = -inv_prps_root_2*prps_mu_2_o_in_axes2_z -
+            prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y - prps_h_3_in_spec2_x*prps_qdd_2_o;
+        /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real prps_Q_t = R(0.5)*prps_d_c_in_axes2_yy;
+        const real prps_Q_t_2 = axis_x_prps_axes2_x*prps_d_c_in_axes2_xy +
+            axis_y_prps_axes2_x*prps_Q_t;
+        const real prps_Q_t_3 = axis_x_prps_axes2_y*prps_d_c_in_axes2_xy +
+            axis_y_prps_axes2_y*prps_Q_t;
+        const real prps_Q_t_4 = axis_x_prps_axes2_z*prps_d_c_in_axes2_xy +
+            axis_y_prps_axes2_z*prps_Q_t;
+        const real prps_Q_t_5 = m->prps_Q_t_5[i];
+        const real prps_Q_t_14 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5;
+        const real prps_Q_xx = -2*prps_Q_t_14;
+        const real prps_Q_t_6 = m->prps_Q_t_6[i];
+        const real prps_Q_t_7 = m->prps_Q_t_7[i];
+        const real prps_Q_xy = prps_Q_t_6 + prps_Q_t_7 - axis_y_prps_axes2_x*prps_Q_t_3 -
+            axis_y_prps_axes2_y*prps_Q_t_2;
+        const real prps_Q_t_8 = m->prps_Q_t_8[i];
+        const real prps_Q_t_9 = m->prps_Q_t_9[i];
+        const real prps_Q_xz = prps_Q_t_8 + prps_Q_t_9 - axis_y_prps_axes2_x*prps_Q_t_4 -
+            axis_y_prps_axes2_z*prps_Q_t_2;
+        const real prps_Q_t_10 = m->prps_Q_t_10[i];
+        const real prps_Q_t_15 = axis_y_prps_axes2_y*prps_Q_t_3 - prps_Q_t_10;
+        const real prps_Q_yy = -2*prps_Q_t_15;
+        const real prps_Q_t_11 = m->prps_Q_t_11[i];
+        const real prps_Q_t_12 = m->prps_Q_t_12[i];
+        const real prps_Q_yz = prps_Q_t_11 + prps_Q_t_12 - axis_y_prps_axes2_y*prps_Q_t_4 -
+            axis_y_prps_axes2_z*prps_Q_t_3;
+        const real prps_Q_t_13 = m->prps_Q_t_13[i];
+        const real prps_Q_t_16 = axis_y_prps_axes2_z*prps_Q_t_4 - prps_Q_t_13;
+        const real prps_Q_zz = -2*prps_Q_t_16;
         /* (prps-U) velocity and gravity terms of the leg force */
-        const real prps_U_in_base_x = axis_x_prps_axes2_in_base_x*prps_phi_3_o_x +
-            prps_T_1_o_z*prps_base_frame_xz - axis_y_prps_axes2_in_base_x*prps_c_o_y;
-        const real prps_U_in_base_y = axis_x_prps_axes2_in_base_y*prps_phi_3_o_x +
-            prps_T_1_o_z*prps_base_frame_yz - axis_y_prps_axes2_in_base_y*prps_c_o_y;
-        const real prps_U_in_base_z = axis_x_prps_axes2_in_base_z*prps_phi_3_o_x +
-            prps_T_1_o_z*prps_base_frame_zz - axis_y_prps_axes2_in_base_z*prps_c_o_y;
+        const real prps_U_x = axis_x_prps_axes2_x*prps_phi_3_o_in_axes2_x +
+            prps_T_1_o_in_axes0_z*prps_base_frame_xz - axis_y_prps_axes2_x*prps_c_o_in_axes2_y;
+        const real prps_U_y = axis_x_prps_axes2_y*prps_phi_3_o_in_axes2_x +
+            prps_T_1_o_in_axes0_z*prps_base_frame_yz - axis_y_prps_axes2_y*prps_c_o_in_axes2_y;
+        const real prps_U_z = axis_x_prps_axes2_z*prps_phi_3_o_in_axes2_x +
+            prps_T_1_o_in_axes0_z*prps_base_frame_zz - axis_y_prps_axes2_z*prps_c_o_in_axes2_y;
+        /* (M_ta) coupling block of M */
+        const real prps_M_ta_t = -prps_Q_xy*prps_q_z;
+        const real prps_M_ta_t_2 = prps_Q_xz*prps_q_y;
+        const real prps_M_ta_t_3 = prps_M_ta_t + prps_M_ta_t_2;
+        const real prps_M_ta_t_4 = prps_Q_xx*prps_q_z - prps_Q_xz*prps_q_x;
+        const real prps_M_ta_t_5 = prps_Q_xy*prps_q_x - prps_Q_xx*prps_q_y;
+        const real prps_M_ta_t_6 = prps_Q_yz*prps_q_y - prps_Q_yy*prps_q_z;
+        const real prps_M_ta_t_7 = prps_Q_yz*prps_q_x;
+        const real prps_M_ta_t_8 = prps_M_ta_t + prps_M_ta_t_7;
+        const real prps_M_ta_t_9 = prps_Q_yy*prps_q_x - prps_Q_xy*prps_q_y;
+        const real prps_M_ta_t_10 = prps_Q_zz*prps_q_y - prps_Q_yz*prps_q_z;
+        const real prps_M_ta_t_11 = prps_Q_xz*prps_q_z - prps_Q_zz*prps_q_x;
+        const real prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real prps_M_aa_t = prps_M_ta_t_10*prps_q_y - prps_M_ta_t_6*prps_q_z;
+        const real prps_M_aa_t_2 = prps_M_ta_t_11*prps_q_y + prps_M_ta_t_8*prps_q_z;
+        const real prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_y - prps_M_ta_t_9*prps_q_z;
+        const real prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_z - prps_M_ta_t_11*prps_q_x;
+        const real prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x;
+        const real prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y;
         /* (Z_a) rotational part of Z */
-        const real prps_Z_a_t = prps_U_in_base_z*prps_q_in_base_y -
-            prps_U_in_base_y*prps_q_in_base_z;
-        const real prps_Z_a_t_2 = prps_U_in_base_x*prps_q_in_base_z -
-            prps_U_in_base_z*prps_q_in_base_x;
-        const real prps_Z_a_t_3 = prps_U_in_base_y*prps_q_in_base_x -
-            prps_U_in_base_x*prps_q_in_base_y;
+        const real prps_Z_a_t = prps_U_z*prps_q_y - prps_U_y*prps_q_z;
+        const real prps_Z_a_t_2 = prps_U_x*prps_q_z - prps_U_z*prps_q_x;
+        const real prps_Z_a_t_3 = prps_U_y*prps_q_x - prps_U_x*prps_q_y;
         /* (prps-H_a_1) moment of the column's unit force about the platform origin */
-        const real prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y -
-            prps_base_frame_yz*prps_q_in_base_z;
-        const real prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z -
-            prps_base_frame_zz*prps_q_in_base_x;
-        const real prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x -
-            prps_base_frame_xz*prps_q_in_base_y;
+        const real prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z;
+        const real prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x;
+        const real prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y;
         /* (prps-H_a_3) moment of the column's unit force about the platform origin */
-        const real prps_H_a_3_x = axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
-            axis_x_prps_axes2_in_base_y*prps_q_in_base_z;
-        const real prps_H_a_3_y = axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
-            axis_x_prps_axes2_in_base_z*prps_q_in_base_x;
-        const real prps_H_a_3_z = axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
-            axis_x_prps_axes2_in_base_x*prps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prps_Q_t_15 : prps_Q_t_15;  /* total_prps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prps_Q_t_16 : prps_Q_t_16;  /* total_prps_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prps_Q_t_17 : prps_Q_t_17;  /* total_prps_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + prps_Q_t_19 : prps_Q_t_19;  /* total_prps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + prps_Q_t_20 : prps_Q_t_20;  /* total_prps_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prps_Q_t_22 : prps_Q_t_22;  /* total_prps_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + prps_M_ta_t_3 : prps_M_ta_t_3;  /* total_prps_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + prps_M_ta_t_4 : prps_M_ta_t_4;  /* total_prps_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + prps_M_ta_t_5 : prps_M_ta_t_5;  /* total_prps_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + prps_M_ta_t_6 : prps_M_ta_t_6;  /* total_prps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + prps_M_ta_t_8 : prps_M_ta_t_8;  /* total_prps_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + prps_M_ta_t_9 : prps_M_ta_t_9;  /* total_prps_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + prps_M_ta_t_10 : prps_M_ta_t_10;  /* total_prps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + prps_M_ta_t_11 : prps_M_ta_t_11;  /* total_prps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + prps_M_ta_t_12 : prps_M_ta_t_12;  /* total_prps_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + prps_M_aa_t : prps_M_aa_t;  /* total_prps_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + prps_M_aa_t_2 : prps_M_aa_t_2;  /* total_prps_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + prps_M_aa_t_3 : prps_M_aa_t_3;  /* total_prps_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + prps_M_aa_t_4 : prps_M_aa_t_4;  /* total_prps_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + prps_M_aa_t_5 : prps_M_aa_t_5;  /* total_prps_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + prps_M_aa_t_6 : prps_M_aa_t_6;  /* total_prps_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + prps_U_in_base_x : prps_U_in_base_x;  /* total_prps_x */
-        terms[22*count + k] = add ? terms[22*count + k] + prps_U_in_base_y : prps_U_in_base_y;  /* total_prps_y */
-        terms[23*count + k] = add ? terms[23*count + k] + prps_U_in_base_z : prps_U_in_base_z;  /* total_prps_z */
-        terms[24*count + k] = add ? terms[24*count + k] + prps_Z_a_t : prps_Z_a_t;  /* total_prps_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + prps_Z_a_t_2 : prps_Z_a_t_2;  /* total_prps_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + prps_Z_a_t_3 : prps_Z_a_t_3;  /* total_prps_z_2 */
+        const real prps_H_a_3_x = axis_x_prps_axes2_z*prps_q_y - axis_x_prps_axes2_y*prps_q_z;
+        const real prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x;
+        const real prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prps_Q_xx : prps_Q_xx;  /* M_tt_prps_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prps_Q_xy : prps_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prps_Q_xz : prps_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + prps_Q_yy : prps_Q_yy;  /* M_tt_prps_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + prps_Q_yz : prps_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + prps_Q_zz : prps_Q_zz;  /* M_tt_prps_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + prps_M_ta_t_3 : prps_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + prps_M_ta_t_4 : prps_M_ta_t_4;  /* M_ta_prps_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + prps_M_ta_t_5 : prps_M_ta_t_5;  /* M_ta_prps_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + prps_M_ta_t_6 : prps_M_ta_t_6;  /* M_ta_prps_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + -prps_M_ta_t_8 : -prps_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + prps_M_ta_t_9 : prps_M_ta_t_9;  /* M_ta_prps_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + prps_M_ta_t_10 : prps_M_ta_t_10;  /* M_ta_prps_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + prps_M_ta_t_11 : prps_M_ta_t_11;  /* M_ta_prps_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + prps_M_ta_t_12 : prps_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + prps_M_aa_t : prps_M_aa_t;  /* M_aa_prps_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + prps_M_aa_t_2 : prps_M_aa_t_2;  /* M_aa_prps_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + prps_M_aa_t_3 : prps_M_aa_t_3;  /* M_aa_prps_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + prps_M_aa_t_4 : prps_M_aa_t_4;  /* M_aa_prps_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + prps_M_aa_t_5 : prps_M_aa_t_5;  /* M_aa_prps_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + prps_M_aa_t_6 : prps_M_aa_t_6;  /* M_aa_prps_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + prps_U_x : prps_U_x;  /* Z_t_prps_x */
+        terms[22*count + k] = add ? terms[22*count + k] + prps_U_y : prps_U_y;  /* Z_t_prps_y */
+        terms[23*count + k] = add ? terms[23*count + k] + prps_U_z : prps_U_z;  /* Z_t_prps_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + prps_Z_a_t : prps_Z_a_t;  /* Z_a_prps_x */
+        terms[25*count + k] = add ? terms[25*count + k] + prps_Z_a_t_2 : prps_Z_a_t_2;  /* Z_a_prps_y */
+        terms[26*count + k] = add ? terms[26*count + k] + prps_Z_a_t_3 : prps_Z_a_t_3;  /* Z_a_prps_z */
+        /* (prps-w_1) reciprocal vector 1 */
         o[0*count + k] = prps_base_frame_xz;
         o[1*count + k] = prps_base_frame_yz;
         o[2*count + k] = prps_base_frame_zz;
+        /* (prps-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prps_H_a_1_x;
         o[4*count + k] = prps_H_a_1_y;
         o[5*count + k] = prps_H_a_1_z;
-        o[6*count + k] = axis_x_prps_axes2_in_base_x;
-        o[7*count + k] = axis_x_prps_axes2_in_base_y;
-        o[8*count + k] = axis_x_prps_axes2_in_base_z;
+        /* (prps-w_3) reciprocal vector 3 */
+        o[6*count + k] = axis_x_prps_axes2_x;
+        o[7*count + k] = axis_x_prps_axes2_y;
+        o[8*count + k] = axis_x_prps_axes2_z;
+        /* (prps-H_a_3) moment of the column's unit force about the platform origin */
         o[9*count + k] = prps_H_a_3_x;
         o[10*count + k] = prps_H_a_3_y;
         o[11*count + k] = prps_H_a_3_z;
         o[13*count + k] = ((prps_base_frame_xz + (prps_base_frame_yz + prps_base_frame_zz)) +
-            (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((axis_x_prps_axes2_in_base_x +
-            (axis_x_prps_axes2_in_base_y + axis_x_prps_axes2_in_base_z)) + (prps_H_a_3_x +
-            (prps_H_a_3_y + prps_H_a_3_z)));
+            (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((axis_x_prps_axes2_x +
+            (axis_x_prps_axes2_y + axis_x_prps_axes2_z)) + (prps_H_a_3_x + (prps_H_a_3_y +
+            prps_H_a_3_z)));
         o[12*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -1728,101 +1744,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_prps_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_prps_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_prps_xx;
-        const real total_prps_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_prps_yy;
-        const real total_prps_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_prps_zz;
+        const real M_tt_xx = M_tt_prps_xx + m_star;
+        const real M_tt_prps_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_prps_yy + m_star;
+        const real M_tt_prps_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_prps_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_prps_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_prps_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_prps_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_prps_xz_2 - h_star_in_base_y;
-        const real total_prps_yx = sums[9*w + k];
-        const real M_ta_yx = total_prps_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_prps_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_prps_yz_2;
-        const real total_prps_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_prps_zx;
-        const real total_prps_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_prps_zy;
+        const real M_ta_prps_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_prps_xy + h_star_z;
+        const real M_ta_prps_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_prps_xz - h_star_y;
+        const real M_ta_prps_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_prps_yx - h_star_z;
+        const real M_ta_prps_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_prps_yz + h_star_x;
+        const real M_ta_prps_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_prps_zx + h_star_y;
+        const real M_ta_prps_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_prps_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_prps_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_prps_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_prps_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_prps_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_prps_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_prps_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_prps_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_prps_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_prps_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_prps_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_prps_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_prps_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_prps_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_prps_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_prps_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_prps_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_prps_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_prps_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_prps_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_prps_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_prps_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_prps_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_prps_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prps_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_prps_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_prps_x;
+        const real Z_t_prps_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prps_x;
         const real Z_p_y = s[28*w + k];
-        const real total_prps_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_prps_y;
+        const real Z_t_prps_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prps_y;
         const real Z_p_z = s[29*w + k];
-        const real total_prps_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_prps_z;
+        const real Z_t_prps_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_prps_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_prps_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_prps_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_prps_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_prps_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_prps_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_prps_z_2;
+        const real Z_a_prps_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_prps_x + Z_q_x;
+        const real Z_a_prps_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_prps_y + Z_q_y;
+        const real Z_a_prps_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_prps_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_prps_xy = sums[1*w + k];
-        M[1*w + k] = -total_prps_xy;
-        M[6*w + k] = -total_prps_xy;
-        const real total_prps_xz = sums[2*w + k];
-        M[2*w + k] = -total_prps_xz;
-        M[12*w + k] = -total_prps_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_prps_yz = sums[4*w + k];
-        M[8*w + k] = -total_prps_yz;
-        M[13*w + k] = -total_prps_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_prps_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_prps_xx_2;
-        M[18*w + k] = total_prps_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_prps_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_prps_yy_2;
-        M[25*w + k] = -total_prps_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_prps_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_prps_zz_2;
-        M[32*w + k] = -total_prps_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1832,17 +1851,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_prps_xy + total_prps_xz)) + (M_tt_yy + (total_prps_yz +
-            M_tt_zz))) + ((total_prps_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_prps_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_prps_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -1913,37 +1933,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1956,15 +1982,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1982,141 +2008,139 @@ INLINE void M_legs_prps(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
-        /* (prps-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real prps_h_3_y = m->prps_h_3_y[i];
-        const real prps_d_phi_3_t = inv_prps_root_2*prps_h_3_y;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
         /* (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real prps_Jc_2_zz = m->prps_Jc_2_zz[i];
-        const real prps_h_3_x = m->prps_h_3_x[i];
-        const real prps_d_Gamma_2_y = prps_h_3_x + inv_prps_root_2*prps_Jc_2_zz;
+        const real prps_Jc_2_in_axes2_zz = m->prps_Jc_2_in_axes2_zz[i];
+        const real prps_h_3_in_spec2_x = m->prps_h_3_in_spec2_x[i];
+        const real prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x +
+            inv_prps_root_2*prps_Jc_2_in_axes2_zz;
         /* (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real prps_d_c_yy = -inv_prps_root_2*prps_d_Gamma_2_y - inv_prps_root_2*prps_h_3_x;
+        const real prps_h_3_in_spec2_y = m->prps_h_3_in_spec2_y[i];
+        const real prps_d_c_in_axes2_xy = inv_prps_root_2*prps_h_3_in_spec2_y;
+        const real prps_d_c_in_axes2_yy = -inv_prps_root_2*prps_d_Gamma_2_in_axes2_y -
+            inv_prps_root_2*prps_h_3_in_spec2_x;
         /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 -
+        const real axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 -
             prps_base_frame_xx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 -
+        const real axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 -
             prps_base_frame_yx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 -
+        const real axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 -
             prps_base_frame_zx*prps_s_2;
-        const real prps_Q_t = R(0.5)*prps_d_c_yy;
-        const real prps_Q_t_2 = axis_y_prps_axes2_in_base_x*prps_Q_t +
-            prps_d_phi_3_t*(prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2);
-        const real prps_Q_t_3 = axis_y_prps_axes2_in_base_y*prps_Q_t +
-            prps_d_phi_3_t*(prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2);
-        const real prps_Q_t_4 = axis_y_prps_axes2_in_base_z*prps_Q_t +
-            prps_d_phi_3_t*(prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2);
+        const real prps_Q_t = R(0.5)*prps_d_c_in_axes2_yy;
+        const real prps_Q_t_2 = axis_y_prps_axes2_x*prps_Q_t +
+            prps_d_c_in_axes2_xy*(prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2);
+        const real prps_Q_t_3 = axis_y_prps_axes2_y*prps_Q_t +
+            prps_d_c_in_axes2_xy*(prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2);
+        const real prps_Q_t_4 = axis_y_prps_axes2_z*prps_Q_t +
+            prps_d_c_in_axes2_xy*(prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2);
         const real prps_Q_t_5 = m->prps_Q_t_5[i];
-        const real prps_Q_t_14 = axis_y_prps_axes2_in_base_x*prps_Q_t_2 - prps_Q_t_5;
-        const real prps_Q_t_15 = 2*prps_Q_t_14;
+        const real prps_Q_t_14 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5;
+        const real prps_Q_xx = -2*prps_Q_t_14;
         const real prps_Q_t_6 = m->prps_Q_t_6[i];
         const real prps_Q_t_7 = m->prps_Q_t_7[i];
-        const real prps_Q_t_16 = axis_y_prps_axes2_in_base_x*prps_Q_t_3 +
-            axis_y_prps_axes2_in_base_y*prps_Q_t_2 - prps_Q_t_6 - prps_Q_t_7;
+        const real prps_Q_xy = prps_Q_t_6 + prps_Q_t_7 - axis_y_prps_axes2_x*prps_Q_t_3 -
+            axis_y_prps_axes2_y*prps_Q_t_2;
         const real prps_Q_t_8 = m->prps_Q_t_8[i];
         const real prps_Q_t_9 = m->prps_Q_t_9[i];
-        const real prps_Q_t_17 = axis_y_prps_axes2_in_base_x*prps_Q_t_4 +
-            axis_y_prps_axes2_in_base_z*prps_Q_t_2 - prps_Q_t_8 - prps_Q_t_9;
+        const real prps_Q_xz = prps_Q_t_8 + prps_Q_t_9 - axis_y_prps_axes2_x*prps_Q_t_4 -
+            axis_y_prps_axes2_z*prps_Q_t_2;
         const real prps_Q_t_10 = m->prps_Q_t_10[i];
-        const real prps_Q_t_18 = axis_y_prps_axes2_in_base_y*prps_Q_t_3 - prps_Q_t_10;
-        const real prps_Q_t_19 = 2*prps_Q_t_18;
+        const real prps_Q_t_15 = axis_y_prps_axes2_y*prps_Q_t_3 - prps_Q_t_10;
+        const real prps_Q_yy = -2*prps_Q_t_15;
         const real prps_Q_t_11 = m->prps_Q_t_11[i];
         const real prps_Q_t_12 = m->prps_Q_t_12[i];
-        const real prps_Q_t_20 = axis_y_prps_axes2_in_base_y*prps_Q_t_4 +
-            axis_y_prps_axes2_in_base_z*prps_Q_t_3 - prps_Q_t_11 - prps_Q_t_12;
+        const real prps_Q_yz = prps_Q_t_11 + prps_Q_t_12 - axis_y_prps_axes2_y*prps_Q_t_4 -
+            axis_y_prps_axes2_z*prps_Q_t_3;
         const real prps_Q_t_13 = m->prps_Q_t_13[i];
-        const real prps_Q_t_21 = axis_y_prps_axes2_in_base_z*prps_Q_t_4 - prps_Q_t_13;
-        const real prps_Q_t_22 = 2*prps_Q_t_21;
+        const real prps_Q_t_16 = axis_y_prps_axes2_z*prps_Q_t_4 - prps_Q_t_13;
+        const real prps_Q_zz = -2*prps_Q_t_16;
         /* (M_ta) coupling block of M */
-        const real prps_M_ta_t = prps_Q_t_16*prps_q_in_base_z;
-        const real prps_M_ta_t_2 = prps_Q_t_17*prps_q_in_base_y;
-        const real prps_M_ta_t_3 = prps_M_ta_t - prps_M_ta_t_2;
-        const real prps_M_ta_t_4 = prps_Q_t_15*prps_q_in_base_z - prps_Q_t_17*prps_q_in_base_x;
-        const real prps_M_ta_t_5 = prps_Q_t_15*prps_q_in_base_y - prps_Q_t_16*prps_q_in_base_x;
-        const real prps_M_ta_t_6 = prps_Q_t_19*prps_q_in_base_z - prps_Q_t_20*prps_q_in_base_y;
-        const real prps_M_ta_t_7 = prps_Q_t_20*prps_q_in_base_x;
-        const real prps_M_ta_t_8 = prps_M_ta_t - prps_M_ta_t_7;
-        const real prps_M_ta_t_9 = prps_Q_t_16*prps_q_in_base_y - prps_Q_t_19*prps_q_in_base_x;
-        const real prps_M_ta_t_10 = prps_Q_t_20*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_y;
-        const real prps_M_ta_t_11 = prps_Q_t_17*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_x;
+        const real prps_M_ta_t = -prps_Q_xy*prps_q_z;
+        const real prps_M_ta_t_2 = prps_Q_xz*prps_q_y;
+        const real prps_M_ta_t_3 = prps_M_ta_t + prps_M_ta_t_2;
+        const real prps_M_ta_t_4 = prps_Q_xx*prps_q_z - prps_Q_xz*prps_q_x;
+        const real prps_M_ta_t_5 = prps_Q_xy*prps_q_x - prps_Q_xx*prps_q_y;
+        const real prps_M_ta_t_6 = prps_Q_yz*prps_q_y - prps_Q_yy*prps_q_z;
+        const real prps_M_ta_t_7 = prps_Q_yz*prps_q_x;
+        const real prps_M_ta_t_8 = prps_M_ta_t + prps_M_ta_t_7;
+        const real prps_M_ta_t_9 = prps_Q_yy*prps_q_x - prps_Q_xy*prps_q_y;
+        const real prps_M_ta_t_10 = prps_Q_zz*prps_q_y - prps_Q_yz*prps_q_z;
+        const real prps_M_ta_t_11 = prps_Q_xz*prps_q_z - prps_Q_zz*prps_q_x;
         const real prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real prps_M_aa_t = prps_M_ta_t_6*prps_q_in_base_z - prps_M_ta_t_10*prps_q_in_base_y;
-        const real prps_M_aa_t_2 = prps_M_ta_t_8*prps_q_in_base_z -
-            prps_M_ta_t_11*prps_q_in_base_y;
-        const real prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_in_base_y +
-            prps_M_ta_t_9*prps_q_in_base_z;
-        const real prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_in_base_z -
-            prps_M_ta_t_11*prps_q_in_base_x;
-        const real prps_M_aa_t_5 = prps_M_ta_t_12*prps_q_in_base_x +
-            prps_M_ta_t_5*prps_q_in_base_z;
-        const real prps_M_aa_t_6 = prps_M_ta_t_5*prps_q_in_base_y -
-            prps_M_ta_t_9*prps_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + prps_Q_t_15 : prps_Q_t_15;  /* total_prps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prps_Q_t_16 : prps_Q_t_16;  /* total_prps_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prps_Q_t_17 : prps_Q_t_17;  /* total_prps_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + prps_Q_t_19 : prps_Q_t_19;  /* total_prps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + prps_Q_t_20 : prps_Q_t_20;  /* total_prps_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prps_Q_t_22 : prps_Q_t_22;  /* total_prps_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + prps_M_ta_t_3 : prps_M_ta_t_3;  /* total_prps_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + prps_M_ta_t_4 : prps_M_ta_t_4;  /* total_prps_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + prps_M_ta_t_5 : prps_M_ta_t_5;  /* total_prps_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + prps_M_ta_t_6 : prps_M_ta_t_6;  /* total_prps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + prps_M_ta_t_8 : prps_M_ta_t_8;  /* total_prps_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + prps_M_ta_t_9 : prps_M_ta_t_9;  /* total_prps_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + prps_M_ta_t_10 : prps_M_ta_t_10;  /* total_prps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + prps_M_ta_t_11 : prps_M_ta_t_11;  /* total_prps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + prps_M_ta_t_12 : prps_M_ta_t_12;  /* total_prps_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + prps_M_aa_t : prps_M_aa_t;  /* total_prps_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + prps_M_aa_t_2 : prps_M_aa_t_2;  /* total_prps_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + prps_M_aa_t_3 : prps_M_aa_t_3;  /* total_prps_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + prps_M_aa_t_4 : prps_M_aa_t_4;  /* total_prps_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + prps_M_aa_t_5 : prps_M_aa_t_5;  /* total_prps_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + prps_M_aa_t_6 : prps_M_aa_t_6;  /* total_prps_zz_3 */
+        const real prps_M_aa_t = prps_M_ta_t_10*prps_q_y - prps_M_ta_t_6*prps_q_z;
+        const real prps_M_aa_t_2 = prps_M_ta_t_11*prps_q_y + prps_M_ta_t_8*prps_q_z;
+        const real prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_y - prps_M_ta_t_9*prps_q_z;
+        const real prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_z - prps_M_ta_t_11*prps_q_x;
+        const real prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x;
+        const real prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prps_Q_xx : prps_Q_xx;  /* M_tt_prps_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prps_Q_xy : prps_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prps_Q_xz : prps_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + prps_Q_yy : prps_Q_yy;  /* M_tt_prps_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + prps_Q_yz : prps_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + prps_Q_zz : prps_Q_zz;  /* M_tt_prps_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + prps_M_ta_t_3 : prps_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + prps_M_ta_t_4 : prps_M_ta_t_4;  /* M_ta_prps_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + prps_M_ta_t_5 : prps_M_ta_t_5;  /* M_ta_prps_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + prps_M_ta_t_6 : prps_M_ta_t_6;  /* M_ta_prps_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + -prps_M_ta_t_8 : -prps_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + prps_M_ta_t_9 : prps_M_ta_t_9;  /* M_ta_prps_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + prps_M_ta_t_10 : prps_M_ta_t_10;  /* M_ta_prps_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + prps_M_ta_t_11 : prps_M_ta_t_11;  /* M_ta_prps_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + prps_M_ta_t_12 : prps_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + prps_M_aa_t : prps_M_aa_t;  /* M_aa_prps_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + prps_M_aa_t_2 : prps_M_aa_t_2;  /* M_aa_prps_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + prps_M_aa_t_3 : prps_M_aa_t_3;  /* M_aa_prps_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + prps_M_aa_t_4 : prps_M_aa_t_4;  /* M_aa_prps_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + prps_M_aa_t_5 : prps_M_aa_t_5;  /* M_aa_prps_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + prps_M_aa_t_6 : prps_M_aa_t_6;  /* M_aa_prps_zz */
         o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -2134,81 +2158,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_prps_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_prps_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_prps_xx;
-        const real total_prps_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_prps_yy;
-        const real total_prps_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_prps_zz;
+        const real M_tt_xx = M_tt_prps_xx + m_star;
+        const real M_tt_prps_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_prps_yy + m_star;
+        const real M_tt_prps_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_prps_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_prps_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_prps_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_prps_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_prps_xz_2 - h_star_in_base_y;
-        const real total_prps_yx = sums[9*w + k];
-        const real M_ta_yx = total_prps_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_prps_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_prps_yz_2;
-        const real total_prps_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_prps_zx;
-        const real total_prps_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_prps_zy;
+        const real M_ta_prps_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_prps_xy + h_star_z;
+        const real M_ta_prps_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_prps_xz - h_star_y;
+        const real M_ta_prps_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_prps_yx - h_star_z;
+        const real M_ta_prps_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_prps_yz + h_star_x;
+        const real M_ta_prps_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_prps_zx + h_star_y;
+        const real M_ta_prps_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_prps_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_prps_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_prps_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_prps_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_prps_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_prps_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_prps_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_prps_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_prps_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_prps_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_prps_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_prps_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_prps_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_prps_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_prps_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_prps_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_prps_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_prps_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_prps_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_prps_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_prps_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_prps_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_prps_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_prps_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prps_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_prps_xy = sums[1*w + k];
-        M[1*w + k] = -total_prps_xy;
-        M[6*w + k] = -total_prps_xy;
-        const real total_prps_xz = sums[2*w + k];
-        M[2*w + k] = -total_prps_xz;
-        M[12*w + k] = -total_prps_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_prps_yz = sums[4*w + k];
-        M[8*w + k] = -total_prps_yz;
-        M[13*w + k] = -total_prps_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_prps_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_prps_xx_2;
-        M[18*w + k] = total_prps_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_prps_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_prps_yy_2;
-        M[25*w + k] = -total_prps_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_prps_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_prps_zz_2;
-        M[32*w + k] = -total_prps_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2218,10 +2245,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_prps_xy) + (total_prps_xz + (M_tt_yy + total_prps_yz)))
-            + ((M_tt_zz + total_prps_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) +
-            (((total_prps_yy_2 + M_ta_yz) + (M_ta_zx + (M_ta_zy + total_prps_zz_2))) + ((M_aa_xx +
-            (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2304,16 +2331,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2324,30 +2354,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2369,9 +2408,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2389,152 +2428,152 @@ INLINE void Z_legs_prps(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
-        /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 -
-            prps_base_frame_xx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 -
-            prps_base_frame_yx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 -
-            prps_base_frame_zx*prps_s_2;
-        const real axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 +
-            prps_base_frame_xy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 +
-            prps_base_frame_yy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 +
-            prps_base_frame_zy*prps_s_2;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
         /* (prps-S_dot) velocity of the connection point */
+        const real axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 +
+            prps_base_frame_xy*prps_s_2;
+        const real axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 +
+            prps_base_frame_yy*prps_s_2;
+        const real axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 +
+            prps_base_frame_zy*prps_s_2;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y;
+        const real prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y;
         const real omega_x = s[15*w + j];
-        const real prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z;
-        const real prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x;
+        const real prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z;
+        const real prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x;
         const real t_dot_x = s[12*w + j];
         const real prps_S_dot_x = prps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prps_S_dot_y = prps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prps_S_dot_z = prps_S_dot_t_3 + t_dot_z;
-        const real prps_S_dot_tip_x = axis_x_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_x_prps_axes2_in_base_y*prps_S_dot_y + axis_x_prps_axes2_in_base_z*prps_S_dot_z;
+        const real prps_S_dot_in_axes2_x = axis_x_prps_axes2_x*prps_S_dot_x +
+            axis_x_prps_axes2_y*prps_S_dot_y + axis_x_prps_axes2_z*prps_S_dot_z;
         /* (prps-qd_2) rate of joint 2 */
-        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z);
+        const real axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 -
+            prps_base_frame_xx*prps_s_2;
+        const real axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 -
+            prps_base_frame_yx*prps_s_2;
+        const real axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 -
+            prps_base_frame_zx*prps_s_2;
+        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x +
+            axis_y_prps_axes2_y*prps_S_dot_y + axis_y_prps_axes2_z*prps_S_dot_z);
+        /* (prps-W_2) centripetal tensor of link 2 */
+        const real prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2;
         /* (prps-u_1) centripetal acceleration of the connection point */
         const real prps_u_1_x = omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2;
         const real prps_u_1_y = omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3;
         const real prps_u_1_z = omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t;
-        /* (prps-W_2) centripetal tensor of link 2 */
-        const real prps_W_2_t = prps_qd_2*prps_qd_2;
-        /* (prps-u_1) centripetal acceleration of the connection point */
-        const real prps_u_1_tip_y = axis_y_prps_axes2_in_base_x*prps_u_1_x +
-            axis_y_prps_axes2_in_base_y*prps_u_1_y + axis_y_prps_axes2_in_base_z*prps_u_1_z;
+        const real prps_u_1_in_axes2_y = axis_y_prps_axes2_x*prps_u_1_x +
+            axis_y_prps_axes2_y*prps_u_1_y + axis_y_prps_axes2_z*prps_u_1_z;
         /* (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real prps_rel_o_y = prps_u_1_tip_y - 2*prps_S_dot_tip_x*prps_qd_2;
+        const real prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y -
+            2*prps_S_dot_in_axes2_x*prps_qd_2;
         /* (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real prps_qdd_2_o = inv_prps_root_2*prps_rel_o_y;
-        /* (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real prps_h_3_x = m->prps_h_3_x[i];
-        const real prps_h_3_y = m->prps_h_3_y[i];
-        const real prps_phi_3_o_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2_o;
-        /* (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prps_g_r0_x = m->prps_g_r0_x[i];
-        const real prps_g_r0_y = m->prps_g_r0_y[i];
-        const real prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2;
-        const real prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2;
+        const real prps_qdd_2_o = inv_prps_root_2*prps_rel_o_in_axes2_y;
+        /* (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
+           link 1, less gravity */
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_g_r0_z = m->prps_g_r0_z[i];
-        const real prps_acc_2_o_z = prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y
-            + prps_base_frame_zz*prps_u_1_z - prps_g_r0_z;
+        const real prps_g_in_axes0_z = m->prps_g_in_axes0_z[i];
+        const real prps_acc_1_o_in_axes0_z = prps_base_frame_xz*prps_u_1_x +
+            prps_base_frame_yz*prps_u_1_y + prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z;
         /* (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real prps_acc_3_o_x = axis_x_prps_axes2_in_base_x*prps_u_1_x +
-            axis_x_prps_axes2_in_base_y*prps_u_1_y + axis_x_prps_axes2_in_base_z*prps_u_1_z -
-            prps_g_r1_x;
-        const real prps_acc_3_o_y = prps_u_1_tip_y - prps_g_r1_y;
+        const real prps_g_in_axes0_x = m->prps_g_in_axes0_x[i];
+        const real prps_g_in_axes0_y = m->prps_g_in_axes0_y[i];
+        const real prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2;
+        const real prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2;
+        const real prps_acc_3_o_in_axes2_x = axis_x_prps_axes2_x*prps_u_1_x +
+            axis_x_prps_axes2_y*prps_u_1_y + axis_x_prps_axes2_z*prps_u_1_z - prps_g_in_axes2_x;
+        const real prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - prps_g_in_axes2_y;
+        /* (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real prps_h_3_in_spec2_x = m->prps_h_3_in_spec2_x[i];
+        const real prps_h_3_in_spec2_y = m->prps_h_3_in_spec2_y[i];
+        const real prps_phi_3_o_in_axes2_x = prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x -
+            prps_h_3_in_spec2_y*prps_qdd_2_o;
         /* (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real prps_Jc_2_zz = m->prps_Jc_2_zz[i];
-        const real prps_h_2_x = m->prps_h_2_x[i];
-        const real prps_h_2_y = m->prps_h_2_y[i];
-        const real prps_mu_2_o_z = prps_Jc_2_zz*prps_qdd_2_o + prps_acc_3_o_y*prps_h_3_x +
-            prps_g_r1_x*prps_h_2_y - prps_acc_3_o_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x;
+        const real prps_Jc_2_in_axes2_zz = m->prps_Jc_2_in_axes2_zz[i];
+        const real prps_h_2_in_spec2_x = m->prps_h_2_in_spec2_x[i];
+        const real prps_h_2_in_spec2_y = m->prps_h_2_in_spec2_y[i];
+        const real prps_mu_2_o_in_axes2_z = prps_Jc_2_in_axes2_zz*prps_qdd_2_o +
+            prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x + prps_g_in_axes2_x*prps_h_2_in_spec2_y -
+            prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y - prps_g_in_axes2_y*prps_h_2_in_spec2_x;
         /* (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real prps_link1_mass = m->prps_link1_mass[i];
         const real prps_link2_mass = m->prps_link2_mass[i];
-        const real prps_T_1_o_z = prps_acc_2_o_z*prps_link1_mass + prps_acc_2_o_z*prps_link2_mass;
+        const real prps_T_1_o_in_axes0_z = prps_acc_1_o_in_axes0_z*prps_link1_mass +
+            prps_acc_1_o_in_axes0_z*prps_link2_mass;
         /* (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real prps_c_o_y = prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_o_z -
-            prps_h_3_x*prps_qdd_2_o;
+        const real prps_c_o_in_axes2_y = -inv_prps_root_2*prps_mu_2_o_in_axes2_z -
+            prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y - prps_h_3_in_spec2_x*prps_qdd_2_o;
         /* (prps-U) velocity and gravity terms of the leg force */
-        const real prps_U_in_base_x = axis_x_prps_axes2_in_base_x*prps_phi_3_o_x +
-            prps_T_1_o_z*prps_base_frame_xz - axis_y_prps_axes2_in_base_x*prps_c_o_y;
-        const real prps_U_in_base_y = axis_x_prps_axes2_in_base_y*prps_phi_3_o_x +
-            prps_T_1_o_z*prps_base_frame_yz - axis_y_prps_axes2_in_base_y*prps_c_o_y;
-        const real prps_U_in_base_z = axis_x_prps_axes2_in_base_z*prps_phi_3_o_x +
-            prps_T_1_o_z*prps_base_frame_zz - axis_y_prps_axes2_in_base_z*prps_c_o_y;
+        const real prps_U_x = axis_x_prps_axes2_x*prps_phi_3_o_in_axes2_x +
+            prps_T_1_o_in_axes0_z*prps_base_frame_xz - axis_y_prps_axes2_x*prps_c_o_in_axes2_y;
+        const real prps_U_y = axis_x_prps_axes2_y*prps_phi_3_o_in_axes2_x +
+            prps_T_1_o_in_axes0_z*prps_base_frame_yz - axis_y_prps_axes2_y*prps_c_o_in_axes2_y;
+        const real prps_U_z = axis_x_prps_axes2_z*prps_phi_3_o_in_axes2_x +
+            prps_T_1_o_in_axes0_z*prps_base_frame_zz - axis_y_prps_axes2_z*prps_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real prps_Z_a_t = prps_U_in_base_z*prps_q_in_base_y -
-            prps_U_in_base_y*prps_q_in_base_z;
-        const real prps_Z_a_t_2 = prps_U_in_base_x*prps_q_in_base_z -
-            prps_U_in_base_z*prps_q_in_base_x;
-        const real prps_Z_a_t_3 = prps_U_in_base_y*prps_q_in_base_x -
-            prps_U_in_base_x*prps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prps_U_in_base_x : prps_U_in_base_x;  /* total_prps_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prps_U_in_base_y : prps_U_in_base_y;  /* total_prps_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prps_U_in_base_z : prps_U_in_base_z;  /* total_prps_z */
-        terms[3*count + k] = add ? terms[3*count + k] + prps_Z_a_t : prps_Z_a_t;  /* total_prps_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + prps_Z_a_t_2 : prps_Z_a_t_2;  /* total_prps_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + prps_Z_a_t_3 : prps_Z_a_t_3;  /* total_prps_z_2 */
+        const real prps_Z_a_t = prps_U_z*prps_q_y - prps_U_y*prps_q_z;
+        const real prps_Z_a_t_2 = prps_U_x*prps_q_z - prps_U_z*prps_q_x;
+        const real prps_Z_a_t_3 = prps_U_y*prps_q_x - prps_U_x*prps_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + prps_U_x : prps_U_x;  /* Z_t_prps_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prps_U_y : prps_U_y;  /* Z_t_prps_y */
+        terms[2*count + k] = add ? terms[2*count + k] + prps_U_z : prps_U_z;  /* Z_t_prps_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + prps_Z_a_t : prps_Z_a_t;  /* Z_a_prps_x */
+        terms[4*count + k] = add ? terms[4*count + k] + prps_Z_a_t_2 : prps_Z_a_t_2;  /* Z_a_prps_y */
+        terms[5*count + k] = add ? terms[5*count + k] + prps_Z_a_t_3 : prps_Z_a_t_3;  /* Z_a_prps_z */
         o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -2552,27 +2591,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_prps_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_prps_x;
+        const real Z_t_prps_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prps_x;
         const real Z_p_y = s[19*w + k];
-        const real total_prps_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_prps_y;
+        const real Z_t_prps_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prps_y;
         const real Z_p_z = s[20*w + k];
-        const real total_prps_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_prps_z;
+        const real Z_t_prps_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_prps_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_prps_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_prps_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_prps_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_prps_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_prps_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_prps_z_2;
+        const real Z_a_prps_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_prps_x + Z_q_x;
+        const real Z_a_prps_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_prps_y + Z_q_y;
+        const real Z_a_prps_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_prps_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -2673,88 +2714,82 @@ INLINE void H_legs_prps(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
-        /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 +
-            prps_base_frame_xy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 +
-            prps_base_frame_yy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 +
-            prps_base_frame_zy*prps_s_2;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
+        /* (prps-w_3) reciprocal vector 3 */
+        const real prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2;
+        const real prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2;
+        const real prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2;
         /* (prps-H_a_1) moment of the column's unit force about the platform origin */
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y -
-            prps_base_frame_yz*prps_q_in_base_z;
+        const real prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z;
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
-        const real prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z -
-            prps_base_frame_zz*prps_q_in_base_x;
-        const real prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x -
-            prps_base_frame_xz*prps_q_in_base_y;
+        const real prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x;
+        const real prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y;
         /* (prps-H_a_3) moment of the column's unit force about the platform origin */
-        const real prps_H_a_3_x = axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
-            axis_x_prps_axes2_in_base_y*prps_q_in_base_z;
-        const real prps_H_a_3_y = axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
-            axis_x_prps_axes2_in_base_z*prps_q_in_base_x;
-        const real prps_H_a_3_z = axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
-            axis_x_prps_axes2_in_base_x*prps_q_in_base_y;
+        const real prps_H_a_3_x = prps_q_y*prps_w_3_z - prps_q_z*prps_w_3_y;
+        const real prps_H_a_3_y = prps_q_z*prps_w_3_x - prps_q_x*prps_w_3_z;
+        const real prps_H_a_3_z = prps_q_x*prps_w_3_y - prps_q_y*prps_w_3_x;
+        /* (prps-w_1) reciprocal vector 1 */
         o[0*count + k] = prps_base_frame_xz;
         o[1*count + k] = prps_base_frame_yz;
         o[2*count + k] = prps_base_frame_zz;
+        /* (prps-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prps_H_a_1_x;
         o[4*count + k] = prps_H_a_1_y;
         o[5*count + k] = prps_H_a_1_z;
-        o[6*count + k] = axis_x_prps_axes2_in_base_x;
-        o[7*count + k] = axis_x_prps_axes2_in_base_y;
-        o[8*count + k] = axis_x_prps_axes2_in_base_z;
+        /* (prps-w_3) reciprocal vector 3 */
+        o[6*count + k] = prps_w_3_x;
+        o[7*count + k] = prps_w_3_y;
+        o[8*count + k] = prps_w_3_z;
+        /* (prps-H_a_3) moment of the column's unit force about the platform origin */
         o[9*count + k] = prps_H_a_3_x;
         o[10*count + k] = prps_H_a_3_y;
         o[11*count + k] = prps_H_a_3_z;
         o[13*count + k] = ((prps_base_frame_xz + (prps_base_frame_yz + prps_base_frame_zz)) +
-            (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((axis_x_prps_axes2_in_base_x +
-            (axis_x_prps_axes2_in_base_y + axis_x_prps_axes2_in_base_z)) + (prps_H_a_3_x +
-            (prps_H_a_3_y + prps_H_a_3_z)));
+            (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((prps_w_3_x + (prps_w_3_y +
+            prps_w_3_z)) + (prps_H_a_3_x + (prps_H_a_3_y + prps_H_a_3_z)));
         o[12*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -2866,33 +2901,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -2900,31 +2922,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2952,9 +3000,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2972,178 +3020,178 @@ INLINE void required_legs_prps(const prepared *m, size_t w, size_t leg, size_t l
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
-        /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 -
-            prps_base_frame_xx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 -
-            prps_base_frame_yx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 -
-            prps_base_frame_zx*prps_s_2;
-        const real axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 +
-            prps_base_frame_xy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 +
-            prps_base_frame_yy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 +
-            prps_base_frame_zy*prps_s_2;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
         /* (prps-S_dot) velocity of the connection point */
+        const real axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 +
+            prps_base_frame_xy*prps_s_2;
+        const real axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 +
+            prps_base_frame_yy*prps_s_2;
+        const real axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 +
+            prps_base_frame_zy*prps_s_2;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y;
+        const real prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y;
         const real omega_x = s[15*w + j];
-        const real prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z;
-        const real prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x;
+        const real prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z;
+        const real prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x;
         const real t_dot_x = s[12*w + j];
         const real prps_S_dot_x = prps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prps_S_dot_y = prps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prps_S_dot_z = prps_S_dot_t_3 + t_dot_z;
-        const real prps_S_dot_tip_x = axis_x_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_x_prps_axes2_in_base_y*prps_S_dot_y + axis_x_prps_axes2_in_base_z*prps_S_dot_z;
+        const real prps_S_dot_in_axes2_x = axis_x_prps_axes2_x*prps_S_dot_x +
+            axis_x_prps_axes2_y*prps_S_dot_y + axis_x_prps_axes2_z*prps_S_dot_z;
         /* (prps-qd_2) rate of joint 2 */
-        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z);
+        const real axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 -
+            prps_base_frame_xx*prps_s_2;
+        const real axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 -
+            prps_base_frame_yx*prps_s_2;
+        const real axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 -
+            prps_base_frame_zx*prps_s_2;
+        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x +
+            axis_y_prps_axes2_y*prps_S_dot_y + axis_y_prps_axes2_z*prps_S_dot_z);
         /* (prps-W_2) centripetal tensor of link 2 */
-        const real prps_W_2_t = prps_qd_2*prps_qd_2;
-        /* (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prps_g_r0_x = m->prps_g_r0_x[i];
-        const real prps_g_r0_y = m->prps_g_r0_y[i];
-        const real prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2;
-        const real prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2;
-        /* (prps-H_a_1) moment of the column's unit force about the platform origin */
-        const real prps_base_frame_yz = m->prps_base_frame_yz[i];
-        const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y -
-            prps_base_frame_yz*prps_q_in_base_z;
-        const real prps_base_frame_xz = m->prps_base_frame_xz[i];
-        const real prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z -
-            prps_base_frame_zz*prps_q_in_base_x;
-        const real prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x -
-            prps_base_frame_xz*prps_q_in_base_y;
-        /* (prps-H_a_3) moment of the column's unit force about the platform origin */
-        const real prps_H_a_3_x = axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
-            axis_x_prps_axes2_in_base_y*prps_q_in_base_z;
-        const real prps_H_a_3_y = axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
-            axis_x_prps_axes2_in_base_z*prps_q_in_base_x;
-        const real prps_H_a_3_z = axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
-            axis_x_prps_axes2_in_base_x*prps_q_in_base_y;
+        const real prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2;
         /* (prps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y;
+        const real prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z;
+        const real prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x;
+        const real prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x;
         /* (prps-S_ddot) acceleration of the connection point */
         const real prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2;
         const real prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3;
         const real prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t;
-        const real prps_S_ddot_tip_y = axis_y_prps_axes2_in_base_x*prps_S_ddot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_ddot_y + axis_y_prps_axes2_in_base_z*prps_S_ddot_z;
+        const real prps_S_ddot_in_axes2_y = axis_y_prps_axes2_x*prps_S_ddot_x +
+            axis_y_prps_axes2_y*prps_S_ddot_y + axis_y_prps_axes2_z*prps_S_ddot_z;
         /* (prps-rel) acceleration of the connection point left to the joint accelerations */
-        const real prps_rel_y = prps_S_ddot_tip_y - 2*prps_S_dot_tip_x*prps_qd_2;
-        /* (prps-qdd_1) acceleration of joint 1 */
-        const real prps_qdd_2 = inv_prps_root_2*prps_rel_y;
+        const real prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y -
+            2*prps_S_dot_in_axes2_x*prps_qd_2;
+        /* (prps-qdd_2) acceleration of joint 2 */
+        const real prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y;
+        /* (prps-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prps_base_frame_xz = m->prps_base_frame_xz[i];
+        const real prps_base_frame_yz = m->prps_base_frame_yz[i];
+        const real prps_base_frame_zz = m->prps_base_frame_zz[i];
+        const real prps_g_in_axes0_z = m->prps_g_in_axes0_z[i];
+        const real prps_acc_1_in_axes0_z = prps_S_ddot_x*prps_base_frame_xz +
+            prps_S_ddot_y*prps_base_frame_yz + prps_S_ddot_z*prps_base_frame_zz -
+            prps_g_in_axes0_z;
         /* (prps-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real prps_acc_3_x = axis_x_prps_axes2_in_base_x*prps_S_ddot_x +
-            axis_x_prps_axes2_in_base_y*prps_S_ddot_y + axis_x_prps_axes2_in_base_z*prps_S_ddot_z
-            - prps_g_r1_x;
-        const real prps_acc_3_y = prps_S_ddot_tip_y - prps_g_r1_y;
-        const real prps_g_r0_z = m->prps_g_r0_z[i];
-        const real prps_acc_3_z = prps_S_ddot_x*prps_base_frame_xz +
-            prps_S_ddot_y*prps_base_frame_yz + prps_S_ddot_z*prps_base_frame_zz - prps_g_r0_z;
+        const real prps_g_in_axes0_x = m->prps_g_in_axes0_x[i];
+        const real prps_g_in_axes0_y = m->prps_g_in_axes0_y[i];
+        const real prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2;
+        const real prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2;
+        const real prps_acc_3_in_axes2_x = axis_x_prps_axes2_x*prps_S_ddot_x +
+            axis_x_prps_axes2_y*prps_S_ddot_y + axis_x_prps_axes2_z*prps_S_ddot_z -
+            prps_g_in_axes2_x;
+        const real prps_acc_3_in_axes2_y = prps_S_ddot_in_axes2_y - prps_g_in_axes2_y;
         /* (prps-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real prps_h_3_x = m->prps_h_3_x[i];
-        const real prps_h_3_y = m->prps_h_3_y[i];
-        const real prps_phi_3_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2;
+        const real prps_h_3_in_spec2_x = m->prps_h_3_in_spec2_x[i];
+        const real prps_h_3_in_spec2_y = m->prps_h_3_in_spec2_y[i];
+        const real prps_phi_3_in_axes2_x = prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x -
+            prps_h_3_in_spec2_y*prps_qdd_2;
         /* (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prps_Jc_2_zz = m->prps_Jc_2_zz[i];
-        const real prps_h_2_x = m->prps_h_2_x[i];
-        const real prps_h_2_y = m->prps_h_2_y[i];
-        const real prps_mu_2_z = prps_Jc_2_zz*prps_qdd_2 + prps_acc_3_y*prps_h_3_x +
-            prps_g_r1_x*prps_h_2_y - prps_acc_3_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x;
+        const real prps_Jc_2_in_axes2_zz = m->prps_Jc_2_in_axes2_zz[i];
+        const real prps_h_2_in_spec2_x = m->prps_h_2_in_spec2_x[i];
+        const real prps_h_2_in_spec2_y = m->prps_h_2_in_spec2_y[i];
+        const real prps_mu_2_in_axes2_z = prps_Jc_2_in_axes2_zz*prps_qdd_2 +
+            prps_acc_3_in_axes2_y*prps_h_3_in_spec2_x + prps_g_in_axes2_x*prps_h_2_in_spec2_y -
+            prps_acc_3_in_axes2_x*prps_h_3_in_spec2_y - prps_g_in_axes2_y*prps_h_2_in_spec2_x;
         /* (prps-T_1) inertia force of the links from 1 outwards, the last link left out */
         const real prps_link1_mass = m->prps_link1_mass[i];
         const real prps_link2_mass = m->prps_link2_mass[i];
-        const real prps_T_1_z = prps_acc_3_z*prps_link1_mass + prps_acc_3_z*prps_link2_mass;
+        const real prps_T_1_in_axes0_z = prps_acc_1_in_axes0_z*prps_link1_mass +
+            prps_acc_1_in_axes0_z*prps_link2_mass;
         /* (prps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prps_c_y = prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_z -
-            prps_h_3_x*prps_qdd_2;
-        const real prps_c_in_base_x = axis_y_prps_axes2_in_base_x*prps_c_y -
-            axis_x_prps_axes2_in_base_x*prps_phi_3_x - prps_T_1_z*prps_base_frame_xz;
-        const real prps_c_in_base_y = axis_y_prps_axes2_in_base_y*prps_c_y -
-            axis_x_prps_axes2_in_base_y*prps_phi_3_x - prps_T_1_z*prps_base_frame_yz;
-        const real prps_c_in_base_z = axis_y_prps_axes2_in_base_z*prps_c_y -
-            axis_x_prps_axes2_in_base_z*prps_phi_3_x - prps_T_1_z*prps_base_frame_zz;
+        const real prps_c_in_axes2_y = -inv_prps_root_2*prps_mu_2_in_axes2_z -
+            prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y - prps_h_3_in_spec2_x*prps_qdd_2;
+        const real prps_c_x = axis_y_prps_axes2_x*prps_c_in_axes2_y -
+            axis_x_prps_axes2_x*prps_phi_3_in_axes2_x - prps_T_1_in_axes0_z*prps_base_frame_xz;
+        const real prps_c_y = axis_y_prps_axes2_y*prps_c_in_axes2_y -
+            axis_x_prps_axes2_y*prps_phi_3_in_axes2_x - prps_T_1_in_axes0_z*prps_base_frame_yz;
+        const real prps_c_z = axis_y_prps_axes2_z*prps_c_in_axes2_y -
+            axis_x_prps_axes2_z*prps_phi_3_in_axes2_x - prps_T_1_in_axes0_z*prps_base_frame_zz;
         /* (R_a) moment that actuators and external wrench must give */
-        const real prps_R_a_t = prps_c_in_base_z*prps_q_in_base_y -
-            prps_c_in_base_y*prps_q_in_base_z;
-        const real prps_R_a_t_2 = prps_c_in_base_x*prps_q_in_base_z -
-            prps_c_in_base_z*prps_q_in_base_x;
-        const real prps_R_a_t_3 = prps_c_in_base_y*prps_q_in_base_x -
-            prps_c_in_base_x*prps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prps_c_in_base_x : prps_c_in_base_x;  /* total_prps_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prps_c_in_base_y : prps_c_in_base_y;  /* total_prps_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prps_c_in_base_z : prps_c_in_base_z;  /* total_prps_z */
-        terms[3*count + k] = add ? terms[3*count + k] + prps_R_a_t : prps_R_a_t;  /* total_prps_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + prps_R_a_t_2 : prps_R_a_t_2;  /* total_prps_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + prps_R_a_t_3 : prps_R_a_t_3;  /* total_prps_z_2 */
+        const real prps_R_a_t = prps_c_y*prps_q_z - prps_c_z*prps_q_y;
+        const real prps_R_a_t_2 = prps_c_z*prps_q_x - prps_c_x*prps_q_z;
+        const real prps_R_a_t_3 = prps_c_x*prps_q_y - prps_c_y*prps_q_x;
+        /* (prps-H_a_1) moment of the column's unit force about the platform origin */
+        const real prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z;
+        const real prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x;
+        const real prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y;
+        /* (prps-H_a_3) moment of the column's unit force about the platform origin */
+        const real prps_H_a_3_x = axis_x_prps_axes2_z*prps_q_y - axis_x_prps_axes2_y*prps_q_z;
+        const real prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x;
+        const real prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + prps_c_x : prps_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + prps_c_y : prps_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + prps_c_z : prps_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + prps_R_a_t : prps_R_a_t;  /* R_a_prps_x */
+        terms[4*count + k] = add ? terms[4*count + k] + prps_R_a_t_2 : prps_R_a_t_2;  /* R_a_prps_y */
+        terms[5*count + k] = add ? terms[5*count + k] + prps_R_a_t_3 : prps_R_a_t_3;  /* R_a_prps_z */
+        /* (prps-w_1) reciprocal vector 1 */
         o[0*count + k] = prps_base_frame_xz;
         o[1*count + k] = prps_base_frame_yz;
         o[2*count + k] = prps_base_frame_zz;
+        /* (prps-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prps_H_a_1_x;
         o[4*count + k] = prps_H_a_1_y;
         o[5*count + k] = prps_H_a_1_z;
-        o[6*count + k] = axis_x_prps_axes2_in_base_x;
-        o[7*count + k] = axis_x_prps_axes2_in_base_y;
-        o[8*count + k] = axis_x_prps_axes2_in_base_z;
+        /* (prps-w_3) reciprocal vector 3 */
+        o[6*count + k] = axis_x_prps_axes2_x;
+        o[7*count + k] = axis_x_prps_axes2_y;
+        o[8*count + k] = axis_x_prps_axes2_z;
+        /* (prps-H_a_3) moment of the column's unit force about the platform origin */
         o[9*count + k] = prps_H_a_3_x;
         o[10*count + k] = prps_H_a_3_y;
         o[11*count + k] = prps_H_a_3_z;
@@ -3176,28 +3224,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_prps_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_prps_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_prps_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_prps_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_prps_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_prps_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_prps_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_prps_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_prps_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_prps_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_prps_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_prps_z_2;
+        const real R_a_prps_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_prps_x + mu_p_x;
+        const real R_a_prps_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_prps_y + mu_p_y;
+        const real R_a_prps_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_prps_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -3317,36 +3367,38 @@ INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t w, size_t leg
         const real t_z = s[2*w + j];
         const real prps_S_z = t_z + R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z - prps_base_point_z;
-        /* (prps-q_1) displacement of joint 1 */
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_q_1_t = prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz +
+        const real prps_S_in_axes0_z = prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz +
             prps_S_z*prps_base_frame_zz;
-        /* (prps-S) from the base point to the connection point */
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-q_2) displacement of joint 2 */
-        const real prps_q_2 = angle(inv_prps_root_2*prps_S_r0_y, inv_prps_root_2*prps_S_r0_x);
-        o[0*count + k] = prps_q_1_t;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_q_2 = angle(inv_prps_root_2*prps_S_in_axes0_y,
+            inv_prps_root_2*prps_S_in_axes0_x);
+        /* (prps-q_1) displacement of joint 1 */
+        o[0*count + k] = prps_S_in_axes0_z;
+        /* (prps-q_2) displacement of joint 2 */
         o[1*count + k] = prps_q_2;
+        /* (prps-q_3) displacement of joint 3 */
         o[2*count + k] = prps_root_2;
-        o[4*count + k] = prps_q_1_t + (prps_q_2 + prps_root_2);
+        o[4*count + k] = prps_S_in_axes0_z + (prps_q_2 + prps_root_2);
         o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -3470,76 +3522,79 @@ INLINE void joint_rates_legs_prps(const prepared *m, size_t w, size_t leg, size_
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
         /* (prps-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real prps_S_dot_x = t_dot_x + omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y;
+        const real prps_S_dot_x = t_dot_x + omega_y*prps_q_z - omega_z*prps_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real prps_S_dot_y = t_dot_y + omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z;
+        const real prps_S_dot_y = t_dot_y + omega_z*prps_q_x - omega_x*prps_q_z;
         const real t_dot_z = s[14*w + j];
-        const real prps_S_dot_z = t_dot_z + omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x;
-        const real prps_S_dot_tip_x = prps_S_dot_x*(prps_base_frame_xx*prps_c_2 +
+        const real prps_S_dot_z = t_dot_z + omega_x*prps_q_y - omega_y*prps_q_x;
+        const real prps_S_dot_in_axes2_x = prps_S_dot_x*(prps_base_frame_xx*prps_c_2 +
             prps_base_frame_xy*prps_s_2) + prps_S_dot_y*(prps_base_frame_yx*prps_c_2 +
             prps_base_frame_yy*prps_s_2) + prps_S_dot_z*(prps_base_frame_zx*prps_c_2 +
             prps_base_frame_zy*prps_s_2);
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_S_dot_tip_z = prps_S_dot_x*prps_base_frame_xz +
+        const real prps_S_dot_in_axes2_z = prps_S_dot_x*prps_base_frame_xz +
             prps_S_dot_y*prps_base_frame_yz + prps_S_dot_z*prps_base_frame_zz;
         /* (prps-qd_2) rate of joint 2 */
         const real prps_qd_2 = inv_prps_root_2*(prps_S_dot_x*(prps_base_frame_xy*prps_c_2 -
             prps_base_frame_xx*prps_s_2) + prps_S_dot_y*(prps_base_frame_yy*prps_c_2 -
             prps_base_frame_yx*prps_s_2) + prps_S_dot_z*(prps_base_frame_zy*prps_c_2 -
             prps_base_frame_zx*prps_s_2));
-        o[0*count + k] = prps_S_dot_tip_z;
+        /* (prps-qd_1) rate of joint 1 */
+        o[0*count + k] = prps_S_dot_in_axes2_z;
+        /* (prps-qd_2) rate of joint 2 */
         o[1*count + k] = prps_qd_2;
-        o[2*count + k] = prps_S_dot_tip_x;
-        o[4*count + k] = prps_S_dot_tip_z + (prps_qd_2 + prps_S_dot_tip_x);
+        /* (prps-qd_3) rate of joint 3 */
+        o[2*count + k] = prps_S_dot_in_axes2_x;
+        o[4*count + k] = prps_S_dot_in_axes2_z + (prps_qd_2 + prps_S_dot_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -3684,89 +3739,88 @@ INLINE void joint_accelerations_legs_prps(const prepared *m, size_t w, size_t le
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
-        /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 -
-            prps_base_frame_xx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 -
-            prps_base_frame_yx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 -
-            prps_base_frame_zx*prps_s_2;
-        const real axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 +
-            prps_base_frame_xy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 +
-            prps_base_frame_yy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 +
-            prps_base_frame_zy*prps_s_2;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
         /* (prps-S_dot) velocity of the connection point */
+        const real axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 +
+            prps_base_frame_xy*prps_s_2;
+        const real axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 +
+            prps_base_frame_yy*prps_s_2;
+        const real axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 +
+            prps_base_frame_zy*prps_s_2;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y;
+        const real prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y;
         const real omega_x = s[15*w + j];
-        const real prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z;
-        const real prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x;
+        const real prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z;
+        const real prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x;
         const real t_dot_x = s[12*w + j];
         const real prps_S_dot_x = prps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prps_S_dot_y = prps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prps_S_dot_z = prps_S_dot_t_3 + t_dot_z;
-        const real prps_S_dot_tip_x = axis_x_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_x_prps_axes2_in_base_y*prps_S_dot_y + axis_x_prps_axes2_in_base_z*prps_S_dot_z;
+        const real prps_S_dot_in_axes2_x = axis_x_prps_axes2_x*prps_S_dot_x +
+            axis_x_prps_axes2_y*prps_S_dot_y + axis_x_prps_axes2_z*prps_S_dot_z;
         /* (prps-qd_2) rate of joint 2 */
-        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z);
+        const real axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 -
+            prps_base_frame_xx*prps_s_2;
+        const real axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 -
+            prps_base_frame_yx*prps_s_2;
+        const real axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 -
+            prps_base_frame_zx*prps_s_2;
+        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x +
+            axis_y_prps_axes2_y*prps_S_dot_y + axis_y_prps_axes2_z*prps_S_dot_z);
         /* (prps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y;
+        const real prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z;
+        const real prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x;
+        const real prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x;
         /* (prps-S_ddot) acceleration of the connection point */
         const real prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2;
         const real prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3;
@@ -3774,21 +3828,24 @@ INLINE void joint_accelerations_legs_prps(const prepared *m, size_t w, size_t le
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_S_ddot_tip_z = prps_S_ddot_x*prps_base_frame_xz +
+        const real prps_S_ddot_in_axes2_z = prps_S_ddot_x*prps_base_frame_xz +
             prps_S_ddot_y*prps_base_frame_yz + prps_S_ddot_z*prps_base_frame_zz;
         /* (prps-rel) acceleration of the connection point left to the joint accelerations */
-        const real prps_rel_x = axis_x_prps_axes2_in_base_x*prps_S_ddot_x +
-            axis_x_prps_axes2_in_base_y*prps_S_ddot_y + axis_x_prps_axes2_in_base_z*prps_S_ddot_z
-            + prps_qd_2*prps_qd_2*prps_root_2;
-        const real prps_rel_y = axis_y_prps_axes2_in_base_x*prps_S_ddot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_ddot_y + axis_y_prps_axes2_in_base_z*prps_S_ddot_z
-            - 2*prps_S_dot_tip_x*prps_qd_2;
+        const real prps_rel_in_axes2_x = axis_x_prps_axes2_x*prps_S_ddot_x +
+            axis_x_prps_axes2_y*prps_S_ddot_y + axis_x_prps_axes2_z*prps_S_ddot_z +
+            prps_qd_2*prps_qd_2*prps_root_2;
+        const real prps_rel_in_axes2_y = axis_y_prps_axes2_x*prps_S_ddot_x +
+            axis_y_prps_axes2_y*prps_S_ddot_y + axis_y_prps_axes2_z*prps_S_ddot_z -
+            2*prps_S_dot_in_axes2_x*prps_qd_2;
+        /* (prps-qdd_2) acceleration of joint 2 */
+        const real prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y;
         /* (prps-qdd_1) acceleration of joint 1 */
-        const real prps_qdd_2 = inv_prps_root_2*prps_rel_y;
-        o[0*count + k] = prps_S_ddot_tip_z;
+        o[0*count + k] = prps_S_ddot_in_axes2_z;
+        /* (prps-qdd_2) acceleration of joint 2 */
         o[1*count + k] = prps_qdd_2;
-        o[2*count + k] = prps_rel_x;
-        o[4*count + k] = prps_S_ddot_tip_z + (prps_qdd_2 + prps_rel_x);
+        /* (prps-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = prps_rel_in_axes2_x;
+        o[4*count + k] = prps_S_ddot_in_axes2_z + (prps_qdd_2 + prps_rel_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -3934,155 +3991,165 @@ INLINE void legs_legs_prps(const prepared *m, size_t w, size_t leg, size_t legs,
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
-        /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 -
-            prps_base_frame_xx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 -
-            prps_base_frame_yx*prps_s_2;
-        const real axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 -
-            prps_base_frame_zx*prps_s_2;
-        const real axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 +
-            prps_base_frame_xy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 +
-            prps_base_frame_yy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 +
-            prps_base_frame_zy*prps_s_2;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
         /* (prps-S_dot) velocity of the connection point */
+        const real axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 +
+            prps_base_frame_xy*prps_s_2;
+        const real axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 +
+            prps_base_frame_yy*prps_s_2;
+        const real axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 +
+            prps_base_frame_zy*prps_s_2;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y;
+        const real prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y;
         const real omega_x = s[15*w + j];
-        const real prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z;
-        const real prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x;
+        const real prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z;
+        const real prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x;
         const real t_dot_x = s[12*w + j];
         const real prps_S_dot_x = prps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prps_S_dot_y = prps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prps_S_dot_z = prps_S_dot_t_3 + t_dot_z;
-        const real prps_S_dot_tip_x = axis_x_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_x_prps_axes2_in_base_y*prps_S_dot_y + axis_x_prps_axes2_in_base_z*prps_S_dot_z;
+        const real prps_S_dot_in_axes2_x = axis_x_prps_axes2_x*prps_S_dot_x +
+            axis_x_prps_axes2_y*prps_S_dot_y + axis_x_prps_axes2_z*prps_S_dot_z;
         /* (prps-qd_2) rate of joint 2 */
-        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z);
+        const real axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 -
+            prps_base_frame_xx*prps_s_2;
+        const real axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 -
+            prps_base_frame_yx*prps_s_2;
+        const real axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 -
+            prps_base_frame_zx*prps_s_2;
+        const real prps_qd_2 = inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x +
+            axis_y_prps_axes2_y*prps_S_dot_y + axis_y_prps_axes2_z*prps_S_dot_z);
         /* (prps-W_2) centripetal tensor of link 2 */
-        const real prps_W_2_t = prps_qd_2*prps_qd_2;
-        /* (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prps_g_r0_x = m->prps_g_r0_x[i];
-        const real prps_g_r0_y = m->prps_g_r0_y[i];
-        const real prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2;
-        const real prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2;
+        const real prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2;
         /* (prps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y;
+        const real prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z;
+        const real prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x;
+        const real prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x;
         /* (prps-S_ddot) acceleration of the connection point */
         const real prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2;
         const real prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3;
         const real prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t;
-        const real prps_S_ddot_tip_y = axis_y_prps_axes2_in_base_x*prps_S_ddot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_ddot_y + axis_y_prps_axes2_in_base_z*prps_S_ddot_z;
+        const real prps_S_ddot_in_axes2_y = axis_y_prps_axes2_x*prps_S_ddot_x +
+            axis_y_prps_axes2_y*prps_S_ddot_y + axis_y_prps_axes2_z*prps_S_ddot_z;
         /* (prps-rel) acceleration of the connection point left to the joint accelerations */
-        const real prps_rel_y = prps_S_ddot_tip_y - 2*prps_S_dot_tip_x*prps_qd_2;
-        /* (prps-qdd_1) acceleration of joint 1 */
-        const real prps_qdd_2 = inv_prps_root_2*prps_rel_y;
-        /* (prps-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real prps_acc_3_x = axis_x_prps_axes2_in_base_x*prps_S_ddot_x +
-            axis_x_prps_axes2_in_base_y*prps_S_ddot_y + axis_x_prps_axes2_in_base_z*prps_S_ddot_z
-            - prps_g_r1_x;
-        const real prps_acc_3_y = prps_S_ddot_tip_y - prps_g_r1_y;
+        const real prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y -
+            2*prps_S_dot_in_axes2_x*prps_qd_2;
+        /* (prps-qdd_2) acceleration of joint 2 */
+        const real prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y;
+        /* (prps-acc_1) acceleration of the reference point of link 1, less gravity */
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_g_r0_z = m->prps_g_r0_z[i];
-        const real prps_acc_3_z = prps_S_ddot_x*prps_base_frame_xz +
-            prps_S_ddot_y*prps_base_frame_yz + prps_S_ddot_z*prps_base_frame_zz - prps_g_r0_z;
+        const real prps_g_in_axes0_z = m->prps_g_in_axes0_z[i];
+        const real prps_acc_1_in_axes0_z = prps_S_ddot_x*prps_base_frame_xz +
+            prps_S_ddot_y*prps_base_frame_yz + prps_S_ddot_z*prps_base_frame_zz -
+            prps_g_in_axes0_z;
+        /* (prps-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real prps_g_in_axes0_x = m->prps_g_in_axes0_x[i];
+        const real prps_g_in_axes0_y = m->prps_g_in_axes0_y[i];
+        const real prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2;
+        const real prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2;
+        const real prps_acc_3_in_axes2_x = axis_x_prps_axes2_x*prps_S_ddot_x +
+            axis_x_prps_axes2_y*prps_S_ddot_y + axis_x_prps_axes2_z*prps_S_ddot_z -
+            prps_g_in_axes2_x;
+        const real prps_acc_3_in_axes2_y = prps_S_ddot_in_axes2_y - prps_g_in_axes2_y;
         /* (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prps_Jc_2_zz = m->prps_Jc_2_zz[i];
-        const real prps_h_2_x = m->prps_h_2_x[i];
-        const real prps_h_2_y = m->prps_h_2_y[i];
-        const real prps_h_3_x = m->prps_h_3_x[i];
-        const real prps_h_3_y = m->prps_h_3_y[i];
-        const real prps_mu_2_z = prps_Jc_2_zz*prps_qdd_2 + prps_acc_3_y*prps_h_3_x +
-            prps_g_r1_x*prps_h_2_y - prps_acc_3_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x;
+        const real prps_Jc_2_in_axes2_zz = m->prps_Jc_2_in_axes2_zz[i];
+        const real prps_h_2_in_spec2_x = m->prps_h_2_in_spec2_x[i];
+        const real prps_h_2_in_spec2_y = m->prps_h_2_in_spec2_y[i];
+        const real prps_h_3_in_spec2_x = m->prps_h_3_in_spec2_x[i];
+        const real prps_h_3_in_spec2_y = m->prps_h_3_in_spec2_y[i];
+        const real prps_mu_2_in_axes2_z = prps_Jc_2_in_axes2_zz*prps_qdd_2 +
+            prps_acc_3_in_axes2_y*prps_h_3_in_spec2_x + prps_g_in_axes2_x*prps_h_2_in_spec2_y -
+            prps_acc_3_in_axes2_x*prps_h_3_in_spec2_y - prps_g_in_axes2_y*prps_h_2_in_spec2_x;
         /* (prps-T_1) inertia force of the links from 1 outwards, the last link left out */
         const real prps_link1_mass = m->prps_link1_mass[i];
         const real prps_link2_mass = m->prps_link2_mass[i];
-        const real prps_T_1_z = prps_acc_3_z*prps_link1_mass + prps_acc_3_z*prps_link2_mass;
+        const real prps_T_1_in_axes0_z = prps_acc_1_in_axes0_z*prps_link1_mass +
+            prps_acc_1_in_axes0_z*prps_link2_mass;
         /* (prps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prps_c_y = prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_z -
-            prps_h_3_x*prps_qdd_2;
+        const real prps_c_in_axes2_y = -inv_prps_root_2*prps_mu_2_in_axes2_z -
+            prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y - prps_h_3_in_spec2_x*prps_qdd_2;
         /* (prps-c_true) leg force on the platform without actuation, the last link's mass included */
         const real prps_link3_mass = m->prps_link3_mass[i];
-        const real prps_c_true_x = prps_W_2_t*prps_h_3_x + prps_h_3_y*prps_qdd_2 -
-            prps_acc_3_x*prps_link3_mass;
-        const real prps_c_true_y = prps_c_y - prps_acc_3_y*prps_link3_mass;
-        const real prps_c_true_z = -prps_T_1_z - prps_acc_3_z*prps_link3_mass;
-        const real prps_c_true_in_base_x = axis_x_prps_axes2_in_base_x*prps_c_true_x +
-            axis_y_prps_axes2_in_base_x*prps_c_true_y + prps_base_frame_xz*prps_c_true_z;
-        const real prps_c_true_in_base_y = axis_x_prps_axes2_in_base_y*prps_c_true_x +
-            axis_y_prps_axes2_in_base_y*prps_c_true_y + prps_base_frame_yz*prps_c_true_z;
-        const real prps_c_true_in_base_z = axis_x_prps_axes2_in_base_z*prps_c_true_x +
-            axis_y_prps_axes2_in_base_z*prps_c_true_y + prps_base_frame_zz*prps_c_true_z;
-        o[0*count + k] = prps_c_true_in_base_x;
-        o[1*count + k] = prps_c_true_in_base_y;
-        o[2*count + k] = prps_c_true_in_base_z;
+        const real prps_c_true_in_axes2_x = prps_h_3_in_spec2_y*prps_qdd_2 -
+            prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_acc_3_in_axes2_x*prps_link3_mass;
+        const real prps_c_true_in_axes2_y = prps_c_in_axes2_y -
+            prps_acc_3_in_axes2_y*prps_link3_mass;
+        const real prps_c_true_in_axes2_z = -prps_T_1_in_axes0_z -
+            prps_acc_1_in_axes0_z*prps_link3_mass;
+        const real prps_c_true_x = axis_x_prps_axes2_x*prps_c_true_in_axes2_x +
+            axis_y_prps_axes2_x*prps_c_true_in_axes2_y +
+            prps_base_frame_xz*prps_c_true_in_axes2_z;
+        const real prps_c_true_y = axis_x_prps_axes2_y*prps_c_true_in_axes2_x +
+            axis_y_prps_axes2_y*prps_c_true_in_axes2_y +
+            prps_base_frame_yz*prps_c_true_in_axes2_z;
+        const real prps_c_true_z = axis_x_prps_axes2_z*prps_c_true_in_axes2_x +
+            axis_y_prps_axes2_z*prps_c_true_in_axes2_y +
+            prps_base_frame_zz*prps_c_true_in_axes2_z;
+        /* (prps-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = prps_c_true_x;
+        o[1*count + k] = prps_c_true_y;
+        o[2*count + k] = prps_c_true_z;
+        /* (prps-w_1) reciprocal vector 1 */
         o[3*count + k] = prps_base_frame_xz;
         o[4*count + k] = prps_base_frame_yz;
         o[5*count + k] = prps_base_frame_zz;
-        o[6*count + k] = axis_x_prps_axes2_in_base_x;
-        o[7*count + k] = axis_x_prps_axes2_in_base_y;
-        o[8*count + k] = axis_x_prps_axes2_in_base_z;
+        /* (prps-w_3) reciprocal vector 3 */
+        o[6*count + k] = axis_x_prps_axes2_x;
+        o[7*count + k] = axis_x_prps_axes2_y;
+        o[8*count + k] = axis_x_prps_axes2_z;
         o[9*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -4158,13 +4225,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -4213,62 +4282,63 @@ INLINE void potential_legs_prps(const prepared *m, size_t w, size_t leg, size_t 
         const real t_z = s[2*w + j];
         const real prps_S_z = t_z + R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z - prps_base_point_z;
-        /* (prps-q_1) displacement of joint 1 */
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_q_1_t = prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz +
+        const real prps_S_in_axes0_z = prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz +
             prps_S_z*prps_base_frame_zz;
-        /* (prps-S) from the base point to the connection point */
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
         /* (potential) potential energy */
-        const real prps_b_r0_z = m->prps_b_r0_z[i];
-        const real prps_potential_t_5 = prps_b_r0_z + prps_q_1_t;
-        const real prps_g_r0_x = m->prps_g_r0_x[i];
-        const real prps_g_r0_y = m->prps_g_r0_y[i];
-        const real prps_g_r0_z = m->prps_g_r0_z[i];
-        const real prps_h_1_x = m->prps_h_1_x[i];
-        const real prps_h_1_y = m->prps_h_1_y[i];
-        const real prps_h_1_z = m->prps_h_1_z[i];
-        const real prps_h_2_x = m->prps_h_2_x[i];
-        const real prps_h_2_y = m->prps_h_2_y[i];
-        const real prps_h_2_z = m->prps_h_2_z[i];
-        const real prps_h_3_x = m->prps_h_3_x[i];
-        const real prps_h_3_y = m->prps_h_3_y[i];
-        const real prps_h_3_z = m->prps_h_3_z[i];
+        const real prps_b_in_axes0_z = m->prps_b_in_axes0_z[i];
+        const real prps_potential_t_5 = prps_S_in_axes0_z + prps_b_in_axes0_z;
+        const real prps_g_in_axes0_x = m->prps_g_in_axes0_x[i];
+        const real prps_g_in_axes0_y = m->prps_g_in_axes0_y[i];
+        const real prps_g_in_axes0_z = m->prps_g_in_axes0_z[i];
+        const real prps_h_1_in_spec0_x = m->prps_h_1_in_spec0_x[i];
+        const real prps_h_1_in_spec0_y = m->prps_h_1_in_spec0_y[i];
+        const real prps_h_1_in_spec0_z = m->prps_h_1_in_spec0_z[i];
+        const real prps_h_2_in_spec2_x = m->prps_h_2_in_spec2_x[i];
+        const real prps_h_2_in_spec2_y = m->prps_h_2_in_spec2_y[i];
+        const real prps_h_2_in_spec2_z = m->prps_h_2_in_spec2_z[i];
+        const real prps_h_3_in_spec2_x = m->prps_h_3_in_spec2_x[i];
+        const real prps_h_3_in_spec2_y = m->prps_h_3_in_spec2_y[i];
+        const real prps_h_3_in_spec2_z = m->prps_h_3_in_spec2_z[i];
         const real prps_link1_mass = m->prps_link1_mass[i];
         const real prps_link2_mass = m->prps_link2_mass[i];
         const real prps_potential_t = m->prps_potential_t[i];
         const real prps_potential_t_2 = m->prps_potential_t_2[i];
         const real prps_potential_t_3 = m->prps_potential_t_3[i];
         const real prps_potential_t_4 = m->prps_potential_t_4[i];
-        const real prps_potential_t_6 = prps_g_r0_x*(prps_h_1_x + prps_potential_t +
-            prps_potential_t_3 + prps_c_2*prps_h_2_x + prps_c_2*prps_h_3_x - prps_h_2_y*prps_s_2 -
-            prps_h_3_y*prps_s_2) + prps_g_r0_y*(prps_h_1_y + prps_potential_t_2 +
-            prps_potential_t_4 + prps_c_2*prps_h_2_y + prps_c_2*prps_h_3_y + prps_h_2_x*prps_s_2 +
-            prps_h_3_x*prps_s_2) + prps_g_r0_z*(prps_h_1_z + prps_h_2_z + prps_h_3_z +
+        const real prps_potential_t_6 = prps_g_in_axes0_x*(prps_h_1_in_spec0_x + prps_potential_t
+            + prps_potential_t_3 + prps_c_2*prps_h_2_in_spec2_x + prps_c_2*prps_h_3_in_spec2_x -
+            prps_h_2_in_spec2_y*prps_s_2 - prps_h_3_in_spec2_y*prps_s_2) +
+            prps_g_in_axes0_y*(prps_h_1_in_spec0_y + prps_potential_t_2 + prps_potential_t_4 +
+            prps_c_2*prps_h_2_in_spec2_y + prps_c_2*prps_h_3_in_spec2_y +
+            prps_h_2_in_spec2_x*prps_s_2 + prps_h_3_in_spec2_x*prps_s_2) +
+            prps_g_in_axes0_z*(prps_h_1_in_spec0_z + prps_h_2_in_spec2_z + prps_h_3_in_spec2_z +
             prps_link1_mass*prps_potential_t_5 + prps_link2_mass*prps_potential_t_5);
-        terms[0*count + k] = add ? terms[0*count + k] + prps_potential_t_6 : prps_potential_t_6;  /* total_prps */
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + prps_potential_t_6 : prps_potential_t_6;  /* potential_t_2 */
         o[0*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -4286,8 +4356,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_prps = sums[0*w + k];
-        const real potential_ = -potential_t - total_prps;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -4357,6 +4428,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -4377,107 +4449,102 @@ INLINE void condition_legs_prps(const prepared *m, size_t w, size_t leg, size_t 
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real prps_q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
+        const real prps_q_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
             R_xz*prps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prps_q_in_base_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
+        const real prps_q_y = R_yx*prps_platform_point_x + R_yy*prps_platform_point_y +
             R_yz*prps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prps_q_in_base_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
+        const real prps_q_z = R_zx*prps_platform_point_x + R_zy*prps_platform_point_y +
             R_zz*prps_platform_point_z;
         const real prps_base_point_x = m->prps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x;
+        const real prps_S_x = prps_q_x + t_x - prps_base_point_x;
         const real prps_base_point_y = m->prps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y;
+        const real prps_S_y = prps_q_y + t_y - prps_base_point_y;
         const real prps_base_point_z = m->prps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z;
+        const real prps_S_z = prps_q_z + t_z - prps_base_point_z;
         const real prps_base_frame_xx = m->prps_base_frame_xx[i];
         const real prps_base_frame_yx = m->prps_base_frame_yx[i];
         const real prps_base_frame_zx = m->prps_base_frame_zx[i];
-        const real prps_S_r0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
+        const real prps_S_in_axes0_x = prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx +
             prps_S_z*prps_base_frame_zx;
         const real prps_base_frame_xy = m->prps_base_frame_xy[i];
         const real prps_base_frame_yy = m->prps_base_frame_yy[i];
         const real prps_base_frame_zy = m->prps_base_frame_zy[i];
-        const real prps_S_r0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
+        const real prps_S_in_axes0_y = prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy +
             prps_S_z*prps_base_frame_zy;
         /* (prps-rho2_2) squared amplitude */
-        const real prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y;
+        const real prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x +
+            prps_S_in_axes0_y*prps_S_in_axes0_y;
         /* (prps-root_2) amplitude, with the sign of the branch */
         const real prps_branch_2 = m->prps_branch_2[i];
         const real prps_root_2 = prps_branch_2*root(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real inv_prps_root_2 = 1/prps_root_2;
         /* (prps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prps_c_2 = inv_prps_root_2*prps_S_r0_x;
+        const real inv_prps_root_2 = 1/prps_root_2;
+        const real prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x;
         /* (prps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prps_s_2 = inv_prps_root_2*prps_S_r0_y;
-        /* (prps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 +
-            prps_base_frame_xy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 +
-            prps_base_frame_yy*prps_s_2;
-        const real axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 +
-            prps_base_frame_zy*prps_s_2;
+        const real prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y;
+        /* (prps-w_3) reciprocal vector 3 */
+        const real prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2;
+        const real prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2;
+        const real prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2;
+        /* (prps-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real prps_pivot_size = magnitude(prps_rho2_2);
+        const real prps_pivot_size_2 = magnitude(prps_root_2);
+        const real prps_least_pivots = lesser(R(1.3333333333333333)*root(prps_pivot_size),
+            R(1.3333333333333333)*prps_pivot_size_2);
         /* (prps-H_a_1) moment of the column's unit force about the platform origin */
         const real prps_base_frame_yz = m->prps_base_frame_yz[i];
         const real prps_base_frame_zz = m->prps_base_frame_zz[i];
-        const real prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y -
-            prps_base_frame_yz*prps_q_in_base_z;
+        const real prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z;
         const real prps_base_frame_xz = m->prps_base_frame_xz[i];
-        const real prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z -
-            prps_base_frame_zz*prps_q_in_base_x;
-        const real prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x -
-            prps_base_frame_xz*prps_q_in_base_y;
+        const real prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x;
+        const real prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y;
         /* (prps-H_a_3) moment of the column's unit force about the platform origin */
-        const real prps_H_a_3_x = axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
-            axis_x_prps_axes2_in_base_y*prps_q_in_base_z;
-        const real prps_H_a_3_y = axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
-            axis_x_prps_axes2_in_base_z*prps_q_in_base_x;
-        const real prps_H_a_3_z = axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
-            axis_x_prps_axes2_in_base_x*prps_q_in_base_y;
+        const real prps_H_a_3_x = prps_q_y*prps_w_3_z - prps_q_z*prps_w_3_y;
+        const real prps_H_a_3_y = prps_q_z*prps_w_3_x - prps_q_x*prps_w_3_z;
+        const real prps_H_a_3_z = prps_q_x*prps_w_3_y - prps_q_y*prps_w_3_x;
         /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real prps_spread_t = b_c_x - prps_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real prps_spread_t_2 = b_c_y - prps_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real prps_spread_t_3 = b_c_z - prps_platform_point_z;
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real prps_spread_t = b_c_in_platform_x - prps_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real prps_spread_t_2 = b_c_in_platform_y - prps_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real prps_spread_t_3 = b_c_in_platform_z - prps_platform_point_z;
         const real prps_spread_t_4 = prps_spread_t*prps_spread_t + prps_spread_t_2*prps_spread_t_2
             + prps_spread_t_3*prps_spread_t_3;
-        /* (prps-rho2_2) squared amplitude */
-        const real prps_pivot_size = magnitude(prps_rho2_2);
-        /* (prps-w_2) reciprocal vector 2 */
-        const real prps_pivot_size_2 = magnitude(prps_root_2);
-        /* (prps-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real prps_least_pivots = lesser(R(1.3333333333333333)*root(prps_pivot_size),
-            R(1.3333333333333333)*prps_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + prps_spread_t_4 : prps_spread_t_4;  /* total_prps */
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + prps_spread_t_4 : prps_spread_t_4;  /* spread_prps */
+        /* (prps-w_1) reciprocal vector 1 */
         o[0*count + k] = prps_base_frame_xz;
         o[1*count + k] = prps_base_frame_yz;
         o[2*count + k] = prps_base_frame_zz;
+        /* (prps-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prps_H_a_1_x;
         o[4*count + k] = prps_H_a_1_y;
         o[5*count + k] = prps_H_a_1_z;
-        o[6*count + k] = axis_x_prps_axes2_in_base_x;
-        o[7*count + k] = axis_x_prps_axes2_in_base_y;
-        o[8*count + k] = axis_x_prps_axes2_in_base_z;
+        /* (prps-w_3) reciprocal vector 3 */
+        o[6*count + k] = prps_w_3_x;
+        o[7*count + k] = prps_w_3_y;
+        o[8*count + k] = prps_w_3_z;
+        /* (prps-H_a_3) moment of the column's unit force about the platform origin */
         o[9*count + k] = prps_H_a_3_x;
         o[10*count + k] = prps_H_a_3_y;
         o[11*count + k] = prps_H_a_3_z;
+        /* (prps-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[12*count + k] = prps_least_pivots;
         o[14*count + k] = ((prps_base_frame_xz + (prps_base_frame_yz + prps_base_frame_zz)) +
-            (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((axis_x_prps_axes2_in_base_x +
-            (axis_x_prps_axes2_in_base_y + axis_x_prps_axes2_in_base_z)) + ((prps_H_a_3_x +
-            prps_H_a_3_y) + (prps_H_a_3_z + prps_least_pivots)));
+            (prps_H_a_1_x + (prps_H_a_1_y + prps_H_a_1_z))) + ((prps_w_3_x + (prps_w_3_y +
+            prps_w_3_z)) + ((prps_H_a_3_x + prps_H_a_3_y) + (prps_H_a_3_z + prps_least_pivots)));
         o[13*count + k] = UNLESS(magnitude(prps_rho2_2) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(prps_root_2) > TOLERANCE*R(0.75));
     }
@@ -4510,9 +4577,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_prps = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_prps = sums[0*w + k];
-        const real spread_ = spread_t*root(total_prps);
+        const real spread_ = root(spread_prps)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

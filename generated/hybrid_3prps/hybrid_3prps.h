@@ -101,20 +101,24 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type prps; copies of the first fill up */
-    hybrid_3prps_real prps_Jc_2_zz[4], prps_Q_t_10[4], prps_Q_t_11[4], prps_Q_t_12[4], prps_Q_t_13[4],
-            prps_Q_t_5[4], prps_Q_t_6[4], prps_Q_t_7[4], prps_Q_t_8[4], prps_Q_t_9[4], prps_b_r0_z[4],
-            prps_base_frame_xx[4], prps_base_frame_xy[4], prps_base_frame_xz[4],
+    hybrid_3prps_real prps_Jc_2_in_axes2_zz[4], prps_Q_t_10[4], prps_Q_t_11[4], prps_Q_t_12[4],
+            prps_Q_t_13[4], prps_Q_t_5[4], prps_Q_t_6[4], prps_Q_t_7[4], prps_Q_t_8[4], prps_Q_t_9[4],
+            prps_b_in_axes0_z[4], prps_base_frame_xx[4], prps_base_frame_xy[4], prps_base_frame_xz[4],
             prps_base_frame_yx[4], prps_base_frame_yy[4], prps_base_frame_yz[4],
             prps_base_frame_zx[4], prps_base_frame_zy[4], prps_base_frame_zz[4], prps_base_point_x[4],
-            prps_base_point_y[4], prps_base_point_z[4], prps_branch_2[4], prps_g_r0_x[4],
-            prps_g_r0_y[4], prps_g_r0_z[4], prps_h_1_x[4], prps_h_1_y[4], prps_h_1_z[4],
-            prps_h_2_x[4], prps_h_2_y[4], prps_h_2_z[4], prps_h_3_x[4], prps_h_3_y[4], prps_h_3_z[4],
-            prps_link1_mass[4], prps_link2_mass[4], prps_link3_mass[4], prps_platform_point_x[4],
-            prps_platform_point_y[4], prps_platform_point_z[4], prps_potential_t[4],
-            prps_potential_t_2[4], prps_potential_t_3[4], prps_potential_t_4[4];
-    hybrid_3prps_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
+            prps_base_point_y[4], prps_base_point_z[4], prps_branch_2[4], prps_g_in_axes0_x[4],
+            prps_g_in_axes0_y[4], prps_g_in_axes0_z[4], prps_h_1_in_spec0_x[4],
+            prps_h_1_in_spec0_y[4], prps_h_1_in_spec0_z[4], prps_h_2_in_spec2_x[4],
+            prps_h_2_in_spec2_y[4], prps_h_2_in_spec2_z[4], prps_h_3_in_spec2_x[4],
+            prps_h_3_in_spec2_y[4], prps_h_3_in_spec2_z[4], prps_link1_mass[4], prps_link2_mass[4],
+            prps_link3_mass[4], prps_platform_point_x[4], prps_platform_point_y[4],
+            prps_platform_point_z[4], prps_potential_t[4], prps_potential_t_2[4],
+            prps_potential_t_3[4], prps_potential_t_4[4];
+    hybrid_3prps_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } hybrid_3prps_model;
 
 extern const hybrid_3prps_params hybrid_3prps_default_params;

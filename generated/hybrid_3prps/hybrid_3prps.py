@@ -356,7 +356,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -542,35 +542,48 @@ def _prepare(p):
     spread_t = 0.3333333333333333*sqrt(3.0)
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.299038105676658*spread_t
+    # (prps-h_1) first moment of link 1 about the origin of link 1
+    prps_h_1_in_spec0_x = prps_link1_centre_of_mass_x*prps_link1_mass
+    prps_h_1_in_spec0_y = prps_link1_centre_of_mass_y*prps_link1_mass
+    prps_h_1_in_spec0_z = prps_link1_centre_of_mass_z*prps_link1_mass
+    # (prps-h_2) first moment of link 2 about the origin of link 2
+    prps_h_2_in_spec2_x = prps_link2_centre_of_mass_x*prps_link2_mass
+    prps_h_2_in_spec2_y = prps_link2_centre_of_mass_y*prps_link2_mass
+    prps_h_2_in_spec2_z = prps_link2_centre_of_mass_z*prps_link2_mass
     # (prps-h_3) first moment of link 3 about the connection point
-    prps_h_3_x = prps_link3_centre_of_mass_x*prps_link3_mass
-    prps_h_3_y = prps_link3_centre_of_mass_y*prps_link3_mass
-    prps_h_3_z = prps_link3_centre_of_mass_z*prps_link3_mass
-    # (prps-J_2) inertia tensor of link 2 about the origin of link 2
-    prps_J_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z
-    prps_J_2_t_2 = (
-    prps_J_2_t + prps_link2_centre_of_mass_x*prps_link2_centre_of_mass_x +
-        prps_link2_centre_of_mass_y*prps_link2_centre_of_mass_y
+    prps_h_3_in_spec2_x = prps_link3_centre_of_mass_x*prps_link3_mass
+    prps_h_3_in_spec2_y = prps_link3_centre_of_mass_y*prps_link3_mass
+    prps_h_3_in_spec2_z = prps_link3_centre_of_mass_z*prps_link3_mass
+    # (prps-acc_1) acceleration of the reference point of link 1, less gravity
+    prps_g_in_axes0_z = (
+    gravity_x*prps_base_frame_xz + gravity_y*prps_base_frame_yz + gravity_z*prps_base_frame_zz
     )
-    # (prps-J_3) inertia tensor of link 3 about the connection point
-    prps_J_3_t = prps_link3_centre_of_mass_z*prps_link3_centre_of_mass_z
-    prps_J_3_t_2 = (
-    prps_J_3_t + prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
-        prps_link3_centre_of_mass_y*prps_link3_centre_of_mass_y
+    # (prps-acc_3) acceleration of the reference point of link 3, less gravity
+    prps_g_in_axes0_x = (
+    gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx + gravity_z*prps_base_frame_zx
+    )
+    prps_g_in_axes0_y = (
+    gravity_x*prps_base_frame_xy + gravity_y*prps_base_frame_yy + gravity_z*prps_base_frame_zy
     )
     # (prps-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-    prps_Jc_2_zz = (
-    prps_link2_inertia_zz + prps_link3_inertia_zz - prps_link2_mass*(prps_J_2_t - prps_J_2_t_2) -
-        prps_link3_mass*(prps_J_3_t - prps_J_3_t_2)
+    prps_Jc_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z
+    prps_Jc_2_t_2 = (
+    prps_Jc_2_t + prps_link2_centre_of_mass_x*prps_link2_centre_of_mass_x +
+        prps_link2_centre_of_mass_y*prps_link2_centre_of_mass_y
     )
-    # (prps-h_2) first moment of link 2 about the origin of link 2
-    prps_h_2_x = prps_link2_centre_of_mass_x*prps_link2_mass
-    prps_h_2_y = prps_link2_centre_of_mass_y*prps_link2_mass
-    prps_h_2_z = prps_link2_centre_of_mass_z*prps_link2_mass
+    prps_Jc_2_t_3 = prps_link3_centre_of_mass_z*prps_link3_centre_of_mass_z
+    prps_Jc_2_t_4 = (
+    prps_Jc_2_t_3 + prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
+        prps_link3_centre_of_mass_y*prps_link3_centre_of_mass_y
+    )
+    prps_Jc_2_in_axes2_zz = (
+    prps_link2_inertia_zz + prps_link3_inertia_zz - prps_link2_mass*(prps_Jc_2_t - prps_Jc_2_t_2)
+        - prps_link3_mass*(prps_Jc_2_t_3 - prps_Jc_2_t_4)
+    )
     # (prps-P_c_1) force that accelerates joint 1, per unit
-    prps_P_c_1_t = prps_link1_mass + prps_link2_mass
+    prps_P_c_1_in_axes0_z = prps_link1_mass + prps_link2_mass
     # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-    prps_Q_t = 0.5*prps_P_c_1_t
+    prps_Q_t = 0.5*prps_P_c_1_in_axes0_z
     prps_Q_t_2 = prps_Q_t*prps_base_frame_xz
     prps_Q_t_3 = prps_Q_t*prps_base_frame_yz
     prps_Q_t_4 = prps_Q_t*prps_base_frame_zz
@@ -598,119 +611,111 @@ def _prepare(p):
     prps_J_star_t_8 = prps_link3_mass*(prps_J_star_t_2 - prps_J_star_t_4)
     prps_J_star_t_9 = prps_link3_mass*prps_platform_point_y*prps_platform_point_z
     prps_J_star_t_10 = prps_link3_mass*(prps_J_star_t_3 - prps_J_star_t_4)
-    # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    prps_g_r0_x = (
-    gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx + gravity_z*prps_base_frame_zx
-    )
-    prps_g_r0_y = (
-    gravity_x*prps_base_frame_xy + gravity_y*prps_base_frame_yy + gravity_z*prps_base_frame_zy
-    )
-    prps_g_r0_z = (
-    gravity_x*prps_base_frame_xz + gravity_y*prps_base_frame_yz + gravity_z*prps_base_frame_zz
-    )
-    # (prps-h_1) first moment of link 1 about the origin of link 1
-    prps_h_1_x = prps_link1_centre_of_mass_x*prps_link1_mass
-    prps_h_1_y = prps_link1_centre_of_mass_y*prps_link1_mass
-    prps_h_1_z = prps_link1_centre_of_mass_z*prps_link1_mass
     # (potential) potential energy
-    prps_b_r0_x = (
+    prps_b_in_axes0_x = (
     prps_base_frame_xx*prps_base_point_x + prps_base_frame_yx*prps_base_point_y +
         prps_base_frame_zx*prps_base_point_z
     )
-    prps_b_r0_y = (
+    prps_b_in_axes0_y = (
     prps_base_frame_xy*prps_base_point_x + prps_base_frame_yy*prps_base_point_y +
         prps_base_frame_zy*prps_base_point_z
     )
-    prps_b_r0_z = (
+    prps_b_in_axes0_z = (
     prps_base_frame_xz*prps_base_point_x + prps_base_frame_yz*prps_base_point_y +
         prps_base_frame_zz*prps_base_point_z
     )
-    prps_potential_t = prps_b_r0_x*prps_link1_mass
-    prps_potential_t_2 = prps_b_r0_y*prps_link1_mass
-    prps_potential_t_3 = prps_b_r0_x*prps_link2_mass
-    prps_potential_t_4 = prps_b_r0_y*prps_link2_mass
-    total_prps = np.sum(np.broadcast_to(prps_link3_mass, _prps))
-    total_prps_x = np.sum(np.broadcast_to(prps_h_star_t, _prps))
-    total_prps_y = np.sum(np.broadcast_to(prps_h_star_t_2, _prps))
-    total_prps_z = np.sum(np.broadcast_to(prps_h_star_t_3, _prps))
-    total_prps_xx = np.sum(np.broadcast_to(prps_J_star_t_5, _prps))
-    total_prps_xy = np.sum(np.broadcast_to(prps_J_star_t_6, _prps))
-    total_prps_xz = np.sum(np.broadcast_to(prps_J_star_t_7, _prps))
-    total_prps_yy = np.sum(np.broadcast_to(prps_J_star_t_8, _prps))
-    total_prps_yz = np.sum(np.broadcast_to(prps_J_star_t_9, _prps))
-    total_prps_zz = np.sum(np.broadcast_to(prps_J_star_t_10, _prps))
-    total_prps_x_2 = np.sum(np.broadcast_to(prps_platform_point_x, _prps))
-    total_prps_y_2 = np.sum(np.broadcast_to(prps_platform_point_y, _prps))
-    total_prps_z_2 = np.sum(np.broadcast_to(prps_platform_point_z, _prps))
+    prps_potential_t = prps_b_in_axes0_x*prps_link1_mass
+    prps_potential_t_2 = prps_b_in_axes0_y*prps_link1_mass
+    prps_potential_t_3 = prps_b_in_axes0_x*prps_link2_mass
+    prps_potential_t_4 = prps_b_in_axes0_y*prps_link2_mass
+    m_star_prps = np.sum(np.broadcast_to(prps_link3_mass, _prps))
+    h_star_prps_in_platform_x = np.sum(np.broadcast_to(prps_h_star_t, _prps))
+    h_star_prps_in_platform_y = np.sum(np.broadcast_to(prps_h_star_t_2, _prps))
+    h_star_prps_in_platform_z = np.sum(np.broadcast_to(prps_h_star_t_3, _prps))
+    J_star_prps_in_platform_xx = np.sum(np.broadcast_to(-prps_J_star_t_5, _prps))
+    J_star_prps_in_platform_xy = np.sum(np.broadcast_to(-prps_J_star_t_6, _prps))
+    J_star_prps_in_platform_xz = np.sum(np.broadcast_to(-prps_J_star_t_7, _prps))
+    J_star_prps_in_platform_yy = np.sum(np.broadcast_to(-prps_J_star_t_8, _prps))
+    J_star_prps_in_platform_yz = np.sum(np.broadcast_to(-prps_J_star_t_9, _prps))
+    J_star_prps_in_platform_zz = np.sum(np.broadcast_to(-prps_J_star_t_10, _prps))
+    b_c_prps_in_platform_x = np.sum(np.broadcast_to(prps_platform_point_x, _prps))
+    b_c_prps_in_platform_y = np.sum(np.broadcast_to(prps_platform_point_y, _prps))
+    b_c_prps_in_platform_z = np.sum(np.broadcast_to(prps_platform_point_z, _prps))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_prps
+    m_star = m_star_prps + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_prps_x
-    h_star_y = h_star_t_2 + total_prps_y
-    h_star_z = h_star_t_3 + total_prps_z
+    h_star_in_platform_x = h_star_prps_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_prps_in_platform_y + h_star_t_2
+    h_star_in_platform_z = h_star_prps_in_platform_z + h_star_t_3
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_prps_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_prps_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_prps_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_prps_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_prps_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_prps_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_prps_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_prps_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_prps_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_prps_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_prps_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_prps_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_prps_x_2
-    b_c_y = 0.3333333333333333*total_prps_y_2
-    b_c_z = 0.3333333333333333*total_prps_z_2
+    b_c_in_platform_x = 0.3333333333333333*b_c_prps_in_platform_x
+    b_c_in_platform_y = 0.3333333333333333*b_c_prps_in_platform_y
+    b_c_in_platform_z = 0.3333333333333333*b_c_prps_in_platform_z
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_prps,
-        (prps_Jc_2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5, prps_Q_t_6,
-                    prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx, prps_base_frame_xy,
-                    prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
-                    prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
-                    prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-                    prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_2_x, prps_h_2_y,
-                    prps_h_3_x, prps_h_3_y, prps_link1_mass, prps_link2_mass,
+        (prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
+                    prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
+                    prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
+                    prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
+                    prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
+                    prps_base_point_z, prps_branch_2, prps_g_in_axes0_x, prps_g_in_axes0_y,
+                    prps_g_in_axes0_z, prps_h_2_in_spec2_x, prps_h_2_in_spec2_y,
+                    prps_h_3_in_spec2_x, prps_h_3_in_spec2_y, prps_link1_mass, prps_link2_mass,
                     prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_prps,
-        (prps_Jc_2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5, prps_Q_t_6,
-                    prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx, prps_base_frame_xy,
-                    prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_zx,
-                    prps_base_frame_zy, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-                    prps_branch_2, prps_h_3_x, prps_h_3_y, prps_platform_point_x,
-                    prps_platform_point_y, prps_platform_point_z,),
+        (prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
+                    prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
+                    prps_base_frame_xy, prps_base_frame_yx, prps_base_frame_yy,
+                    prps_base_frame_zx, prps_base_frame_zy, prps_base_point_x, prps_base_point_y,
+                    prps_base_point_z, prps_branch_2, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y,
+                    prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_prps,
-        (prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        (prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
                     prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
-                    prps_g_r0_z, prps_h_2_x, prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass,
-                    prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z,),
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_in_axes0_x,
+                    prps_g_in_axes0_y, prps_g_in_axes0_z, prps_h_2_in_spec2_x,
+                    prps_h_2_in_spec2_y, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y,
+                    prps_link1_mass, prps_link2_mass, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
@@ -727,17 +732,20 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_prps,
-        (prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        (prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
                     prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
-                    prps_g_r0_z, prps_h_2_x, prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass,
-                    prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z,),
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_in_axes0_x,
+                    prps_g_in_axes0_y, prps_g_in_axes0_z, prps_h_2_in_spec2_x,
+                    prps_h_2_in_spec2_y, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y,
+                    prps_link1_mass, prps_link2_mass, prps_platform_point_x,
+                    prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
@@ -781,34 +789,38 @@ def _prepare(p):
         (),
             (
                 (_prps,
-        (prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        (prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
                     prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
-                    prps_g_r0_z, prps_h_2_x, prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass,
-                    prps_link2_mass, prps_link3_mass, prps_platform_point_x,
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_in_axes0_x,
+                    prps_g_in_axes0_y, prps_g_in_axes0_z, prps_h_2_in_spec2_x,
+                    prps_h_2_in_spec2_y, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y,
+                    prps_link1_mass, prps_link2_mass, prps_link3_mass, prps_platform_point_x,
                     prps_platform_point_y, prps_platform_point_z,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_prps,
-        (prps_b_r0_z, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        (prps_b_in_axes0_z, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
                     prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
                     prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
-                    prps_g_r0_z, prps_h_1_x, prps_h_1_y, prps_h_1_z, prps_h_2_x, prps_h_2_y,
-                    prps_h_2_z, prps_h_3_x, prps_h_3_y, prps_h_3_z, prps_link1_mass,
-                    prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
-                    prps_platform_point_z, prps_potential_t, prps_potential_t_2,
-                    prps_potential_t_3, prps_potential_t_4,),
+                    prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_in_axes0_x,
+                    prps_g_in_axes0_y, prps_g_in_axes0_z, prps_h_1_in_spec0_x,
+                    prps_h_1_in_spec0_y, prps_h_1_in_spec0_z, prps_h_2_in_spec2_x,
+                    prps_h_2_in_spec2_y, prps_h_2_in_spec2_z, prps_h_3_in_spec2_x,
+                    prps_h_3_in_spec2_y, prps_h_3_in_spec2_z, prps_link1_mass, prps_link2_mass,
+                    prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+                    prps_potential_t, prps_potential_t_2, prps_potential_t_3,
+                    prps_potential_t_4,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_prps,
         (prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
@@ -1310,9 +1322,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1367,324 +1380,336 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        prps_Jc_2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5, prps_Q_t_6,
-            prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx, prps_base_frame_xy,
-            prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
-            prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
-            prps_base_point_y, prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y,
-            prps_g_r0_z, prps_h_2_x, prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass,
+        prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
+            prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
+            prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
+            prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
+            prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_branch_2,
+            prps_g_in_axes0_x, prps_g_in_axes0_y, prps_g_in_axes0_z, prps_h_2_in_spec2_x,
+            prps_h_2_in_spec2_y, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y, prps_link1_mass,
             prps_link2_mass, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
-        # (prps-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        prps_d_phi_3_t = inv_prps_root_2*prps_h_3_y
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
-        # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prps_d_Gamma_2_y = prps_h_3_x + inv_prps_root_2*prps_Jc_2_zz
-        # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prps_d_c_yy = -inv_prps_root_2*prps_d_Gamma_2_y - inv_prps_root_2*prps_h_3_x
-        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
-        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
-        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
-        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
-        prps_Q_t = 0.5*prps_d_c_yy
-        prps_Q_t_2 = (
-        axis_x_prps_axes2_in_base_x*prps_d_phi_3_t + axis_y_prps_axes2_in_base_x*prps_Q_t
-        )
-        prps_Q_t_3 = (
-        axis_x_prps_axes2_in_base_y*prps_d_phi_3_t + axis_y_prps_axes2_in_base_y*prps_Q_t
-        )
-        prps_Q_t_4 = (
-        axis_x_prps_axes2_in_base_z*prps_d_phi_3_t + axis_y_prps_axes2_in_base_z*prps_Q_t
-        )
-        prps_Q_t_14 = axis_y_prps_axes2_in_base_x*prps_Q_t_2 - prps_Q_t_5
-        prps_Q_t_15 = 2.0*prps_Q_t_14
-        prps_Q_t_16 = (
-        axis_y_prps_axes2_in_base_x*prps_Q_t_3 + axis_y_prps_axes2_in_base_y*prps_Q_t_2 -
-            prps_Q_t_6 - prps_Q_t_7
-        )
-        prps_Q_t_17 = (
-        axis_y_prps_axes2_in_base_x*prps_Q_t_4 + axis_y_prps_axes2_in_base_z*prps_Q_t_2 -
-            prps_Q_t_8 - prps_Q_t_9
-        )
-        prps_Q_t_18 = axis_y_prps_axes2_in_base_y*prps_Q_t_3 - prps_Q_t_10
-        prps_Q_t_19 = 2.0*prps_Q_t_18
-        prps_Q_t_20 = (
-        axis_y_prps_axes2_in_base_y*prps_Q_t_4 + axis_y_prps_axes2_in_base_z*prps_Q_t_3 -
-            prps_Q_t_11 - prps_Q_t_12
-        )
-        prps_Q_t_21 = axis_y_prps_axes2_in_base_z*prps_Q_t_4 - prps_Q_t_13
-        prps_Q_t_22 = 2.0*prps_Q_t_21
-        # (M_ta) coupling block of M
-        prps_M_ta_t = prps_Q_t_16*prps_q_in_base_z
-        prps_M_ta_t_2 = prps_Q_t_17*prps_q_in_base_y
-        prps_M_ta_t_3 = prps_M_ta_t - prps_M_ta_t_2
-        prps_M_ta_t_4 = prps_Q_t_15*prps_q_in_base_z - prps_Q_t_17*prps_q_in_base_x
-        prps_M_ta_t_5 = prps_Q_t_15*prps_q_in_base_y - prps_Q_t_16*prps_q_in_base_x
-        prps_M_ta_t_6 = prps_Q_t_19*prps_q_in_base_z - prps_Q_t_20*prps_q_in_base_y
-        prps_M_ta_t_7 = prps_Q_t_20*prps_q_in_base_x
-        prps_M_ta_t_8 = prps_M_ta_t - prps_M_ta_t_7
-        prps_M_ta_t_9 = prps_Q_t_16*prps_q_in_base_y - prps_Q_t_19*prps_q_in_base_x
-        prps_M_ta_t_10 = prps_Q_t_20*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_y
-        prps_M_ta_t_11 = prps_Q_t_17*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_x
-        prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2
-        # (M_aa) rotational block of M
-        prps_M_aa_t = prps_M_ta_t_6*prps_q_in_base_z - prps_M_ta_t_10*prps_q_in_base_y
-        prps_M_aa_t_2 = prps_M_ta_t_8*prps_q_in_base_z - prps_M_ta_t_11*prps_q_in_base_y
-        prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_in_base_y + prps_M_ta_t_9*prps_q_in_base_z
-        prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_in_base_z - prps_M_ta_t_11*prps_q_in_base_x
-        prps_M_aa_t_5 = prps_M_ta_t_12*prps_q_in_base_x + prps_M_ta_t_5*prps_q_in_base_z
-        prps_M_aa_t_6 = prps_M_ta_t_5*prps_q_in_base_y - prps_M_ta_t_9*prps_q_in_base_x
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
-        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
-        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
-        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y
+        prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z
+        prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x
         prps_S_dot_x = prps_S_dot_t + t_dot_x
         prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
         prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
-        prps_S_dot_tip_x = (
-        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
-            axis_x_prps_axes2_in_base_z*prps_S_dot_z
+        prps_S_dot_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_dot_x + axis_x_prps_axes2_y*prps_S_dot_y +
+            axis_x_prps_axes2_z*prps_S_dot_z
         )
         # (prps-qd_2) rate of joint 2
+        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
+        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+            axis_y_prps_axes2_z*prps_S_dot_z)
         )
+        # (prps-W_2) centripetal tensor of link 2
+        prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2
         # (prps-u_1) centripetal acceleration of the connection point
         prps_u_1_x = omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
         prps_u_1_y = omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
         prps_u_1_z = omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
-        # (prps-W_2) centripetal tensor of link 2
-        prps_W_2_t = prps_qd_2*prps_qd_2
-        # (prps-u_1) centripetal acceleration of the connection point
-        prps_u_1_tip_y = (
-        axis_y_prps_axes2_in_base_x*prps_u_1_x + axis_y_prps_axes2_in_base_y*prps_u_1_y +
-            axis_y_prps_axes2_in_base_z*prps_u_1_z
+        prps_u_1_in_axes2_y = (
+        axis_y_prps_axes2_x*prps_u_1_x + axis_y_prps_axes2_y*prps_u_1_y +
+            axis_y_prps_axes2_z*prps_u_1_z
         )
         # (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prps_rel_o_y = prps_u_1_tip_y - 2.0*prps_S_dot_tip_x*prps_qd_2
+        prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prps_qdd_2_o = inv_prps_root_2*prps_rel_o_y
-        # (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        prps_phi_3_o_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2_o
-        # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2
-        prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2
-        prps_acc_2_o_z = (
+        prps_qdd_2_o = inv_prps_root_2*prps_rel_o_in_axes2_y
+        # (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        prps_acc_1_o_in_axes0_z = (
         prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
-            prps_base_frame_zz*prps_u_1_z - prps_g_r0_z
+            prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z
         )
         # (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        prps_acc_3_o_x = (
-        axis_x_prps_axes2_in_base_x*prps_u_1_x + axis_x_prps_axes2_in_base_y*prps_u_1_y +
-            axis_x_prps_axes2_in_base_z*prps_u_1_z - prps_g_r1_x
+        prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
+        prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
+        prps_acc_3_o_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_u_1_x + axis_x_prps_axes2_y*prps_u_1_y +
+            axis_x_prps_axes2_z*prps_u_1_z - prps_g_in_axes2_x
         )
-        prps_acc_3_o_y = prps_u_1_tip_y - prps_g_r1_y
+        prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - prps_g_in_axes2_y
+        # (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        prps_phi_3_o_in_axes2_x = (
+        prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_h_3_in_spec2_y*prps_qdd_2_o
+        )
         # (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prps_mu_2_o_z = (
-        prps_Jc_2_zz*prps_qdd_2_o + prps_acc_3_o_y*prps_h_3_x + prps_g_r1_x*prps_h_2_y -
-            prps_acc_3_o_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x
+        prps_mu_2_o_in_axes2_z = (
+        prps_Jc_2_in_axes2_zz*prps_qdd_2_o + prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x +
+            prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y -
+            prps_g_in_axes2_y*prps_h_2_in_spec2_x
         )
+        # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_root_2*prps_Jc_2_in_axes2_zz
         # (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        prps_T_1_o_z = prps_acc_2_o_z*prps_link1_mass + prps_acc_2_o_z*prps_link2_mass
+        prps_T_1_o_in_axes0_z = (
+        prps_acc_1_o_in_axes0_z*prps_link1_mass + prps_acc_1_o_in_axes0_z*prps_link2_mass
+        )
+        # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prps_d_c_in_axes2_xy = inv_prps_root_2*prps_h_3_in_spec2_y
+        prps_d_c_in_axes2_yy = (
+        -inv_prps_root_2*prps_d_Gamma_2_in_axes2_y - inv_prps_root_2*prps_h_3_in_spec2_x
+        )
         # (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prps_c_o_y = (
-        prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_o_z - prps_h_3_x*prps_qdd_2_o
+        prps_c_o_in_axes2_y = (
+        -inv_prps_root_2*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
+            prps_h_3_in_spec2_x*prps_qdd_2_o
         )
+        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
+        prps_Q_t = 0.5*prps_d_c_in_axes2_yy
+        prps_Q_t_2 = axis_x_prps_axes2_x*prps_d_c_in_axes2_xy + axis_y_prps_axes2_x*prps_Q_t
+        prps_Q_t_3 = axis_x_prps_axes2_y*prps_d_c_in_axes2_xy + axis_y_prps_axes2_y*prps_Q_t
+        prps_Q_t_4 = axis_x_prps_axes2_z*prps_d_c_in_axes2_xy + axis_y_prps_axes2_z*prps_Q_t
+        prps_Q_t_14 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5
+        prps_Q_xx = -2.0*prps_Q_t_14
+        prps_Q_xy = (
+        prps_Q_t_6 + prps_Q_t_7 - axis_y_prps_axes2_x*prps_Q_t_3 - axis_y_prps_axes2_y*prps_Q_t_2
+        )
+        prps_Q_xz = (
+        prps_Q_t_8 + prps_Q_t_9 - axis_y_prps_axes2_x*prps_Q_t_4 - axis_y_prps_axes2_z*prps_Q_t_2
+        )
+        prps_Q_t_15 = axis_y_prps_axes2_y*prps_Q_t_3 - prps_Q_t_10
+        prps_Q_yy = -2.0*prps_Q_t_15
+        prps_Q_yz = (
+        prps_Q_t_11 + prps_Q_t_12 - axis_y_prps_axes2_y*prps_Q_t_4 -
+            axis_y_prps_axes2_z*prps_Q_t_3
+        )
+        prps_Q_t_16 = axis_y_prps_axes2_z*prps_Q_t_4 - prps_Q_t_13
+        prps_Q_zz = -2.0*prps_Q_t_16
         # (prps-U) velocity and gravity terms of the leg force
-        prps_U_in_base_x = (
-        axis_x_prps_axes2_in_base_x*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_xz -
-            axis_y_prps_axes2_in_base_x*prps_c_o_y
+        prps_U_x = (
+        axis_x_prps_axes2_x*prps_phi_3_o_in_axes2_x + prps_T_1_o_in_axes0_z*prps_base_frame_xz -
+            axis_y_prps_axes2_x*prps_c_o_in_axes2_y
         )
-        prps_U_in_base_y = (
-        axis_x_prps_axes2_in_base_y*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_yz -
-            axis_y_prps_axes2_in_base_y*prps_c_o_y
+        prps_U_y = (
+        axis_x_prps_axes2_y*prps_phi_3_o_in_axes2_x + prps_T_1_o_in_axes0_z*prps_base_frame_yz -
+            axis_y_prps_axes2_y*prps_c_o_in_axes2_y
         )
-        prps_U_in_base_z = (
-        axis_x_prps_axes2_in_base_z*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_zz -
-            axis_y_prps_axes2_in_base_z*prps_c_o_y
+        prps_U_z = (
+        axis_x_prps_axes2_z*prps_phi_3_o_in_axes2_x + prps_T_1_o_in_axes0_z*prps_base_frame_zz -
+            axis_y_prps_axes2_z*prps_c_o_in_axes2_y
         )
+        # (M_ta) coupling block of M
+        prps_M_ta_t = -prps_Q_xy*prps_q_z
+        prps_M_ta_t_2 = prps_Q_xz*prps_q_y
+        prps_M_ta_t_3 = prps_M_ta_t + prps_M_ta_t_2
+        prps_M_ta_t_4 = prps_Q_xx*prps_q_z - prps_Q_xz*prps_q_x
+        prps_M_ta_t_5 = prps_Q_xy*prps_q_x - prps_Q_xx*prps_q_y
+        prps_M_ta_t_6 = prps_Q_yz*prps_q_y - prps_Q_yy*prps_q_z
+        prps_M_ta_t_7 = prps_Q_yz*prps_q_x
+        prps_M_ta_t_8 = prps_M_ta_t + prps_M_ta_t_7
+        prps_M_ta_t_9 = prps_Q_yy*prps_q_x - prps_Q_xy*prps_q_y
+        prps_M_ta_t_10 = prps_Q_zz*prps_q_y - prps_Q_yz*prps_q_z
+        prps_M_ta_t_11 = prps_Q_xz*prps_q_z - prps_Q_zz*prps_q_x
+        prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2
+        # (M_aa) rotational block of M
+        prps_M_aa_t = prps_M_ta_t_10*prps_q_y - prps_M_ta_t_6*prps_q_z
+        prps_M_aa_t_2 = prps_M_ta_t_11*prps_q_y + prps_M_ta_t_8*prps_q_z
+        prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_y - prps_M_ta_t_9*prps_q_z
+        prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_z - prps_M_ta_t_11*prps_q_x
+        prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x
+        prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y
         # (Z_a) rotational part of Z
-        prps_Z_a_t = prps_U_in_base_z*prps_q_in_base_y - prps_U_in_base_y*prps_q_in_base_z
-        prps_Z_a_t_2 = prps_U_in_base_x*prps_q_in_base_z - prps_U_in_base_z*prps_q_in_base_x
-        prps_Z_a_t_3 = prps_U_in_base_y*prps_q_in_base_x - prps_U_in_base_x*prps_q_in_base_y
+        prps_Z_a_t = prps_U_z*prps_q_y - prps_U_y*prps_q_z
+        prps_Z_a_t_2 = prps_U_x*prps_q_z - prps_U_z*prps_q_x
+        prps_Z_a_t_3 = prps_U_y*prps_q_x - prps_U_x*prps_q_y
         # (prps-H_a_1) moment of the column's unit force about the platform origin
-        prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y - prps_base_frame_yz*prps_q_in_base_z
-        prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z - prps_base_frame_zz*prps_q_in_base_x
-        prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x - prps_base_frame_xz*prps_q_in_base_y
+        prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z
+        prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x
+        prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y
         # (prps-H_a_3) moment of the column's unit force about the platform origin
-        prps_H_a_3_x = (
-        axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
-            axis_x_prps_axes2_in_base_y*prps_q_in_base_z
-        )
-        prps_H_a_3_y = (
-        axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
-            axis_x_prps_axes2_in_base_z*prps_q_in_base_x
-        )
-        prps_H_a_3_z = (
-        axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
-            axis_x_prps_axes2_in_base_x*prps_q_in_base_y
-        )
+        prps_H_a_3_x = axis_x_prps_axes2_z*prps_q_y - axis_x_prps_axes2_y*prps_q_z
+        prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x
+        prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y
         ok = (
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        prps_Q_t_15, prps_Q_t_16, prps_Q_t_17, prps_Q_t_19, prps_Q_t_20, prps_Q_t_22,
-            prps_M_ta_t_3, prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6, prps_M_ta_t_8,
-            prps_M_ta_t_9, prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t,
-            prps_M_aa_t_2, prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6,
-            prps_U_in_base_x, prps_U_in_base_y, prps_U_in_base_z, prps_Z_a_t, prps_Z_a_t_2,
-            prps_Z_a_t_3,
+        prps_Q_xx, prps_Q_xy, prps_Q_xz, prps_Q_yy, prps_Q_yz, prps_Q_zz, prps_M_ta_t_3,
+            prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6, -prps_M_ta_t_8, prps_M_ta_t_9,
+            prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t, prps_M_aa_t_2,
+            prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6, prps_U_x, prps_U_y,
+            prps_U_z, prps_Z_a_t, prps_Z_a_t_2, prps_Z_a_t_3,
         ))
+        # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
         out_H[_H_prps[2][leg]] = prps_base_frame_zz
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prps[3][leg]] = prps_H_a_1_x
         out_H[_H_prps[4][leg]] = prps_H_a_1_y
         out_H[_H_prps[5][leg]] = prps_H_a_1_z
-        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
-        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
-        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
+        # (prps-w_3) reciprocal vector 3
+        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_x
+        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_y
+        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_z
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
         out_H[_H_prps[11][leg]] = prps_H_a_3_z
     (
-    total_prps_xx, total_prps_xy, total_prps_xz, total_prps_yy, total_prps_yz, total_prps_zz,
-        total_prps_xx_2, total_prps_xy_2, total_prps_xz_2, total_prps_yx, total_prps_yy_2,
-        total_prps_yz_2, total_prps_zx, total_prps_zy, total_prps_zz_2, total_prps_xx_3,
-        total_prps_xy_3, total_prps_xz_3, total_prps_yy_3, total_prps_yz_3, total_prps_zz_3,
-        total_prps_x, total_prps_y, total_prps_z, total_prps_x_2, total_prps_y_2, total_prps_z_2,
+    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
+        M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
+        M_aa_prps_xx, M_aa_prps_xy, M_aa_prps_xz, M_aa_prps_yy, M_aa_prps_yz, M_aa_prps_zz,
+        Z_t_prps_x, Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_prps_xx
-    M_tt_yy = m_star - total_prps_yy
-    M_tt_zz = m_star - total_prps_zz
+    M_tt_xx = M_tt_prps_xx + m_star
+    M_tt_yy = M_tt_prps_yy + m_star
+    M_tt_zz = M_tt_prps_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_prps_xy_2
-    M_ta_xz = total_prps_xz_2 - h_star_in_base_y
-    M_ta_yx = total_prps_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_prps_yz_2
-    M_ta_zx = h_star_in_base_y + total_prps_zx
-    M_ta_zy = -h_star_in_base_x - total_prps_zy
+    M_ta_xy = M_ta_prps_xy + h_star_z
+    M_ta_xz = M_ta_prps_xz - h_star_y
+    M_ta_yx = M_ta_prps_yx - h_star_z
+    M_ta_yz = M_ta_prps_yz + h_star_x
+    M_ta_zx = M_ta_prps_zx + h_star_y
+    M_ta_zy = M_ta_prps_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_prps_xx_3
-    M_aa_xy = J_star_t_9 + total_prps_xy_3
-    M_aa_xz = J_star_t_10 - total_prps_xz_3
-    M_aa_yy = J_star_t_13 - total_prps_yy_3
-    M_aa_yz = J_star_t_15 + total_prps_yz_3
-    M_aa_zz = J_star_t_17 - total_prps_zz_3
+    M_aa_xx = J_star_xx + M_aa_prps_xx
+    M_aa_xy = J_star_xy + M_aa_prps_xy
+    M_aa_xz = J_star_xz + M_aa_prps_xz
+    M_aa_yy = J_star_yy + M_aa_prps_yy
+    M_aa_yz = J_star_yz + M_aa_prps_yz
+    M_aa_zz = J_star_zz + M_aa_prps_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prps_x
-    Z_t_y = Z_p_y + total_prps_y
-    Z_t_z = Z_p_z + total_prps_z
+    Z_t_x = Z_p_x + Z_t_prps_x
+    Z_t_y = Z_p_y + Z_t_prps_y
+    Z_t_z = Z_p_z + Z_t_prps_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_prps_x_2
-    Z_a_y = Z_q_in_base_y + total_prps_y_2
-    Z_a_z = Z_q_in_base_z + total_prps_z_2
+    Z_a_x = Z_a_prps_x + Z_q_x
+    Z_a_y = Z_a_prps_y + Z_q_y
+    Z_a_z = Z_a_prps_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_prps_xy
-    out_M[6] = -total_prps_xy
-    out_M[2] = -total_prps_xz
-    out_M[12] = -total_prps_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_prps_yz
-    out_M[13] = -total_prps_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_prps_xx_2
-    out_M[18] = total_prps_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_prps_yy_2
-    out_M[25] = -total_prps_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_prps_zz_2
-    out_M[32] = -total_prps_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1694,9 +1719,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -1708,8 +1735,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1749,185 +1777,186 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        prps_Jc_2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5, prps_Q_t_6,
-            prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx, prps_base_frame_xy,
-            prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_zx, prps_base_frame_zy,
-            prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_branch_2, prps_h_3_x,
-            prps_h_3_y, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+        prps_Jc_2_in_axes2_zz, prps_Q_t_10, prps_Q_t_11, prps_Q_t_12, prps_Q_t_13, prps_Q_t_5,
+            prps_Q_t_6, prps_Q_t_7, prps_Q_t_8, prps_Q_t_9, prps_base_frame_xx,
+            prps_base_frame_xy, prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_zx,
+            prps_base_frame_zy, prps_base_point_x, prps_base_point_y, prps_base_point_z,
+            prps_branch_2, prps_h_3_in_spec2_x, prps_h_3_in_spec2_y, prps_platform_point_x,
+            prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
-        # (prps-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        prps_d_phi_3_t = inv_prps_root_2*prps_h_3_y
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
         # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prps_d_Gamma_2_y = prps_h_3_x + inv_prps_root_2*prps_Jc_2_zz
+        prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_root_2*prps_Jc_2_in_axes2_zz
         # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prps_d_c_yy = -inv_prps_root_2*prps_d_Gamma_2_y - inv_prps_root_2*prps_h_3_x
+        prps_d_c_in_axes2_xy = inv_prps_root_2*prps_h_3_in_spec2_y
+        prps_d_c_in_axes2_yy = (
+        -inv_prps_root_2*prps_d_Gamma_2_in_axes2_y - inv_prps_root_2*prps_h_3_in_spec2_x
+        )
         # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
-        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
-        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
-        prps_Q_t = 0.5*prps_d_c_yy
+        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
+        prps_Q_t = 0.5*prps_d_c_in_axes2_yy
         prps_Q_t_2 = (
-        axis_y_prps_axes2_in_base_x*prps_Q_t + prps_d_phi_3_t*(prps_base_frame_xx*prps_c_2 +
+        axis_y_prps_axes2_x*prps_Q_t + prps_d_c_in_axes2_xy*(prps_base_frame_xx*prps_c_2 +
             prps_base_frame_xy*prps_s_2)
         )
         prps_Q_t_3 = (
-        axis_y_prps_axes2_in_base_y*prps_Q_t + prps_d_phi_3_t*(prps_base_frame_yx*prps_c_2 +
+        axis_y_prps_axes2_y*prps_Q_t + prps_d_c_in_axes2_xy*(prps_base_frame_yx*prps_c_2 +
             prps_base_frame_yy*prps_s_2)
         )
         prps_Q_t_4 = (
-        axis_y_prps_axes2_in_base_z*prps_Q_t + prps_d_phi_3_t*(prps_base_frame_zx*prps_c_2 +
+        axis_y_prps_axes2_z*prps_Q_t + prps_d_c_in_axes2_xy*(prps_base_frame_zx*prps_c_2 +
             prps_base_frame_zy*prps_s_2)
         )
-        prps_Q_t_14 = axis_y_prps_axes2_in_base_x*prps_Q_t_2 - prps_Q_t_5
-        prps_Q_t_15 = 2.0*prps_Q_t_14
-        prps_Q_t_16 = (
-        axis_y_prps_axes2_in_base_x*prps_Q_t_3 + axis_y_prps_axes2_in_base_y*prps_Q_t_2 -
-            prps_Q_t_6 - prps_Q_t_7
+        prps_Q_t_14 = axis_y_prps_axes2_x*prps_Q_t_2 - prps_Q_t_5
+        prps_Q_xx = -2.0*prps_Q_t_14
+        prps_Q_xy = (
+        prps_Q_t_6 + prps_Q_t_7 - axis_y_prps_axes2_x*prps_Q_t_3 - axis_y_prps_axes2_y*prps_Q_t_2
         )
-        prps_Q_t_17 = (
-        axis_y_prps_axes2_in_base_x*prps_Q_t_4 + axis_y_prps_axes2_in_base_z*prps_Q_t_2 -
-            prps_Q_t_8 - prps_Q_t_9
+        prps_Q_xz = (
+        prps_Q_t_8 + prps_Q_t_9 - axis_y_prps_axes2_x*prps_Q_t_4 - axis_y_prps_axes2_z*prps_Q_t_2
         )
-        prps_Q_t_18 = axis_y_prps_axes2_in_base_y*prps_Q_t_3 - prps_Q_t_10
-        prps_Q_t_19 = 2.0*prps_Q_t_18
-        prps_Q_t_20 = (
-        axis_y_prps_axes2_in_base_y*prps_Q_t_4 + axis_y_prps_axes2_in_base_z*prps_Q_t_3 -
-            prps_Q_t_11 - prps_Q_t_12
+        prps_Q_t_15 = axis_y_prps_axes2_y*prps_Q_t_3 - prps_Q_t_10
+        prps_Q_yy = -2.0*prps_Q_t_15
+        prps_Q_yz = (
+        prps_Q_t_11 + prps_Q_t_12 - axis_y_prps_axes2_y*prps_Q_t_4 -
+            axis_y_prps_axes2_z*prps_Q_t_3
         )
-        prps_Q_t_21 = axis_y_prps_axes2_in_base_z*prps_Q_t_4 - prps_Q_t_13
-        prps_Q_t_22 = 2.0*prps_Q_t_21
+        prps_Q_t_16 = axis_y_prps_axes2_z*prps_Q_t_4 - prps_Q_t_13
+        prps_Q_zz = -2.0*prps_Q_t_16
         # (M_ta) coupling block of M
-        prps_M_ta_t = prps_Q_t_16*prps_q_in_base_z
-        prps_M_ta_t_2 = prps_Q_t_17*prps_q_in_base_y
-        prps_M_ta_t_3 = prps_M_ta_t - prps_M_ta_t_2
-        prps_M_ta_t_4 = prps_Q_t_15*prps_q_in_base_z - prps_Q_t_17*prps_q_in_base_x
-        prps_M_ta_t_5 = prps_Q_t_15*prps_q_in_base_y - prps_Q_t_16*prps_q_in_base_x
-        prps_M_ta_t_6 = prps_Q_t_19*prps_q_in_base_z - prps_Q_t_20*prps_q_in_base_y
-        prps_M_ta_t_7 = prps_Q_t_20*prps_q_in_base_x
-        prps_M_ta_t_8 = prps_M_ta_t - prps_M_ta_t_7
-        prps_M_ta_t_9 = prps_Q_t_16*prps_q_in_base_y - prps_Q_t_19*prps_q_in_base_x
-        prps_M_ta_t_10 = prps_Q_t_20*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_y
-        prps_M_ta_t_11 = prps_Q_t_17*prps_q_in_base_z - prps_Q_t_22*prps_q_in_base_x
+        prps_M_ta_t = -prps_Q_xy*prps_q_z
+        prps_M_ta_t_2 = prps_Q_xz*prps_q_y
+        prps_M_ta_t_3 = prps_M_ta_t + prps_M_ta_t_2
+        prps_M_ta_t_4 = prps_Q_xx*prps_q_z - prps_Q_xz*prps_q_x
+        prps_M_ta_t_5 = prps_Q_xy*prps_q_x - prps_Q_xx*prps_q_y
+        prps_M_ta_t_6 = prps_Q_yz*prps_q_y - prps_Q_yy*prps_q_z
+        prps_M_ta_t_7 = prps_Q_yz*prps_q_x
+        prps_M_ta_t_8 = prps_M_ta_t + prps_M_ta_t_7
+        prps_M_ta_t_9 = prps_Q_yy*prps_q_x - prps_Q_xy*prps_q_y
+        prps_M_ta_t_10 = prps_Q_zz*prps_q_y - prps_Q_yz*prps_q_z
+        prps_M_ta_t_11 = prps_Q_xz*prps_q_z - prps_Q_zz*prps_q_x
         prps_M_ta_t_12 = prps_M_ta_t_7 - prps_M_ta_t_2
         # (M_aa) rotational block of M
-        prps_M_aa_t = prps_M_ta_t_6*prps_q_in_base_z - prps_M_ta_t_10*prps_q_in_base_y
-        prps_M_aa_t_2 = prps_M_ta_t_8*prps_q_in_base_z - prps_M_ta_t_11*prps_q_in_base_y
-        prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_in_base_y + prps_M_ta_t_9*prps_q_in_base_z
-        prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_in_base_z - prps_M_ta_t_11*prps_q_in_base_x
-        prps_M_aa_t_5 = prps_M_ta_t_12*prps_q_in_base_x + prps_M_ta_t_5*prps_q_in_base_z
-        prps_M_aa_t_6 = prps_M_ta_t_5*prps_q_in_base_y - prps_M_ta_t_9*prps_q_in_base_x
+        prps_M_aa_t = prps_M_ta_t_10*prps_q_y - prps_M_ta_t_6*prps_q_z
+        prps_M_aa_t_2 = prps_M_ta_t_11*prps_q_y + prps_M_ta_t_8*prps_q_z
+        prps_M_aa_t_3 = prps_M_ta_t_12*prps_q_y - prps_M_ta_t_9*prps_q_z
+        prps_M_aa_t_4 = prps_M_ta_t_4*prps_q_z - prps_M_ta_t_11*prps_q_x
+        prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x
+        prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y
         ok = (
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        prps_Q_t_15, prps_Q_t_16, prps_Q_t_17, prps_Q_t_19, prps_Q_t_20, prps_Q_t_22,
-            prps_M_ta_t_3, prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6, prps_M_ta_t_8,
-            prps_M_ta_t_9, prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t,
-            prps_M_aa_t_2, prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6,
+        prps_Q_xx, prps_Q_xy, prps_Q_xz, prps_Q_yy, prps_Q_yz, prps_Q_zz, prps_M_ta_t_3,
+            prps_M_ta_t_4, prps_M_ta_t_5, prps_M_ta_t_6, -prps_M_ta_t_8, prps_M_ta_t_9,
+            prps_M_ta_t_10, prps_M_ta_t_11, prps_M_ta_t_12, prps_M_aa_t, prps_M_aa_t_2,
+            prps_M_aa_t_3, prps_M_aa_t_4, prps_M_aa_t_5, prps_M_aa_t_6,
         ))
     (
-    total_prps_xx, total_prps_xy, total_prps_xz, total_prps_yy, total_prps_yz, total_prps_zz,
-        total_prps_xx_2, total_prps_xy_2, total_prps_xz_2, total_prps_yx, total_prps_yy_2,
-        total_prps_yz_2, total_prps_zx, total_prps_zy, total_prps_zz_2, total_prps_xx_3,
-        total_prps_xy_3, total_prps_xz_3, total_prps_yy_3, total_prps_yz_3, total_prps_zz_3,
+    M_tt_prps_xx, M_tt_xy, M_tt_xz, M_tt_prps_yy, M_tt_yz, M_tt_prps_zz, M_ta_xx, M_ta_prps_xy,
+        M_ta_prps_xz, M_ta_prps_yx, M_ta_yy, M_ta_prps_yz, M_ta_prps_zx, M_ta_prps_zy, M_ta_zz,
+        M_aa_prps_xx, M_aa_prps_xy, M_aa_prps_xz, M_aa_prps_yy, M_aa_prps_yz, M_aa_prps_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_prps_xx
-    M_tt_yy = m_star - total_prps_yy
-    M_tt_zz = m_star - total_prps_zz
+    M_tt_xx = M_tt_prps_xx + m_star
+    M_tt_yy = M_tt_prps_yy + m_star
+    M_tt_zz = M_tt_prps_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_prps_xy_2
-    M_ta_xz = total_prps_xz_2 - h_star_in_base_y
-    M_ta_yx = total_prps_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_prps_yz_2
-    M_ta_zx = h_star_in_base_y + total_prps_zx
-    M_ta_zy = -h_star_in_base_x - total_prps_zy
+    M_ta_xy = M_ta_prps_xy + h_star_z
+    M_ta_xz = M_ta_prps_xz - h_star_y
+    M_ta_yx = M_ta_prps_yx - h_star_z
+    M_ta_yz = M_ta_prps_yz + h_star_x
+    M_ta_zx = M_ta_prps_zx + h_star_y
+    M_ta_zy = M_ta_prps_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_prps_xx_3
-    M_aa_xy = J_star_t_9 + total_prps_xy_3
-    M_aa_xz = J_star_t_10 - total_prps_xz_3
-    M_aa_yy = J_star_t_13 - total_prps_yy_3
-    M_aa_yz = J_star_t_15 + total_prps_yz_3
-    M_aa_zz = J_star_t_17 - total_prps_zz_3
+    M_aa_xx = J_star_xx + M_aa_prps_xx
+    M_aa_xy = J_star_xy + M_aa_prps_xy
+    M_aa_xz = J_star_xz + M_aa_prps_xz
+    M_aa_yy = J_star_yy + M_aa_prps_yy
+    M_aa_yz = J_star_yz + M_aa_prps_yz
+    M_aa_zz = J_star_zz + M_aa_prps_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_prps_xy
-    out_M[6] = -total_prps_xy
-    out_M[2] = -total_prps_xz
-    out_M[12] = -total_prps_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_prps_yz
-    out_M[13] = -total_prps_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_prps_xx_2
-    out_M[18] = total_prps_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_prps_yy_2
-    out_M[25] = -total_prps_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_prps_zz_2
-    out_M[32] = -total_prps_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1945,8 +1974,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1999,174 +2029,195 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
             prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
             prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-            prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_2_x,
-            prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass, prps_link2_mass,
-            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+            prps_base_point_z, prps_branch_2, prps_g_in_axes0_x, prps_g_in_axes0_y,
+            prps_g_in_axes0_z, prps_h_2_in_spec2_x, prps_h_2_in_spec2_y, prps_h_3_in_spec2_x,
+            prps_h_3_in_spec2_y, prps_link1_mass, prps_link2_mass, prps_platform_point_x,
+            prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
-        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
-        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
-        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
-        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
-        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
-        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
-        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y
+        prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z
+        prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x
         prps_S_dot_x = prps_S_dot_t + t_dot_x
         prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
         prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
-        prps_S_dot_tip_x = (
-        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
-            axis_x_prps_axes2_in_base_z*prps_S_dot_z
+        prps_S_dot_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_dot_x + axis_x_prps_axes2_y*prps_S_dot_y +
+            axis_x_prps_axes2_z*prps_S_dot_z
         )
         # (prps-qd_2) rate of joint 2
+        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
+        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+            axis_y_prps_axes2_z*prps_S_dot_z)
         )
+        # (prps-W_2) centripetal tensor of link 2
+        prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2
         # (prps-u_1) centripetal acceleration of the connection point
         prps_u_1_x = omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
         prps_u_1_y = omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
         prps_u_1_z = omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
-        # (prps-W_2) centripetal tensor of link 2
-        prps_W_2_t = prps_qd_2*prps_qd_2
-        # (prps-u_1) centripetal acceleration of the connection point
-        prps_u_1_tip_y = (
-        axis_y_prps_axes2_in_base_x*prps_u_1_x + axis_y_prps_axes2_in_base_y*prps_u_1_y +
-            axis_y_prps_axes2_in_base_z*prps_u_1_z
+        prps_u_1_in_axes2_y = (
+        axis_y_prps_axes2_x*prps_u_1_x + axis_y_prps_axes2_y*prps_u_1_y +
+            axis_y_prps_axes2_z*prps_u_1_z
         )
         # (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prps_rel_o_y = prps_u_1_tip_y - 2.0*prps_S_dot_tip_x*prps_qd_2
+        prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prps_qdd_2_o = inv_prps_root_2*prps_rel_o_y
-        # (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        prps_phi_3_o_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2_o
-        # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2
-        prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2
-        prps_acc_2_o_z = (
+        prps_qdd_2_o = inv_prps_root_2*prps_rel_o_in_axes2_y
+        # (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+        prps_acc_1_o_in_axes0_z = (
         prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
-            prps_base_frame_zz*prps_u_1_z - prps_g_r0_z
+            prps_base_frame_zz*prps_u_1_z - prps_g_in_axes0_z
         )
         # (prps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        prps_acc_3_o_x = (
-        axis_x_prps_axes2_in_base_x*prps_u_1_x + axis_x_prps_axes2_in_base_y*prps_u_1_y +
-            axis_x_prps_axes2_in_base_z*prps_u_1_z - prps_g_r1_x
+        prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
+        prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
+        prps_acc_3_o_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_u_1_x + axis_x_prps_axes2_y*prps_u_1_y +
+            axis_x_prps_axes2_z*prps_u_1_z - prps_g_in_axes2_x
         )
-        prps_acc_3_o_y = prps_u_1_tip_y - prps_g_r1_y
+        prps_acc_3_o_in_axes2_y = prps_u_1_in_axes2_y - prps_g_in_axes2_y
+        # (prps-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        prps_phi_3_o_in_axes2_x = (
+        prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_h_3_in_spec2_y*prps_qdd_2_o
+        )
         # (prps-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prps_mu_2_o_z = (
-        prps_Jc_2_zz*prps_qdd_2_o + prps_acc_3_o_y*prps_h_3_x + prps_g_r1_x*prps_h_2_y -
-            prps_acc_3_o_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x
+        prps_mu_2_o_in_axes2_z = (
+        prps_Jc_2_in_axes2_zz*prps_qdd_2_o + prps_acc_3_o_in_axes2_y*prps_h_3_in_spec2_x +
+            prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_o_in_axes2_x*prps_h_3_in_spec2_y -
+            prps_g_in_axes2_y*prps_h_2_in_spec2_x
         )
         # (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        prps_T_1_o_z = prps_acc_2_o_z*prps_link1_mass + prps_acc_2_o_z*prps_link2_mass
+        prps_T_1_o_in_axes0_z = (
+        prps_acc_1_o_in_axes0_z*prps_link1_mass + prps_acc_1_o_in_axes0_z*prps_link2_mass
+        )
         # (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prps_c_o_y = (
-        prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_o_z - prps_h_3_x*prps_qdd_2_o
+        prps_c_o_in_axes2_y = (
+        -inv_prps_root_2*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
+            prps_h_3_in_spec2_x*prps_qdd_2_o
         )
         # (prps-U) velocity and gravity terms of the leg force
-        prps_U_in_base_x = (
-        axis_x_prps_axes2_in_base_x*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_xz -
-            axis_y_prps_axes2_in_base_x*prps_c_o_y
+        prps_U_x = (
+        axis_x_prps_axes2_x*prps_phi_3_o_in_axes2_x + prps_T_1_o_in_axes0_z*prps_base_frame_xz -
+            axis_y_prps_axes2_x*prps_c_o_in_axes2_y
         )
-        prps_U_in_base_y = (
-        axis_x_prps_axes2_in_base_y*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_yz -
-            axis_y_prps_axes2_in_base_y*prps_c_o_y
+        prps_U_y = (
+        axis_x_prps_axes2_y*prps_phi_3_o_in_axes2_x + prps_T_1_o_in_axes0_z*prps_base_frame_yz -
+            axis_y_prps_axes2_y*prps_c_o_in_axes2_y
         )
-        prps_U_in_base_z = (
-        axis_x_prps_axes2_in_base_z*prps_phi_3_o_x + prps_T_1_o_z*prps_base_frame_zz -
-            axis_y_prps_axes2_in_base_z*prps_c_o_y
+        prps_U_z = (
+        axis_x_prps_axes2_z*prps_phi_3_o_in_axes2_x + prps_T_1_o_in_axes0_z*prps_base_frame_zz -
+            axis_y_prps_axes2_z*prps_c_o_in_axes2_y
         )
         # (Z_a) rotational part of Z
-        prps_Z_a_t = prps_U_in_base_z*prps_q_in_base_y - prps_U_in_base_y*prps_q_in_base_z
-        prps_Z_a_t_2 = prps_U_in_base_x*prps_q_in_base_z - prps_U_in_base_z*prps_q_in_base_x
-        prps_Z_a_t_3 = prps_U_in_base_y*prps_q_in_base_x - prps_U_in_base_x*prps_q_in_base_y
+        prps_Z_a_t = prps_U_z*prps_q_y - prps_U_y*prps_q_z
+        prps_Z_a_t_2 = prps_U_x*prps_q_z - prps_U_z*prps_q_x
+        prps_Z_a_t_3 = prps_U_y*prps_q_x - prps_U_x*prps_q_y
         ok = (
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        prps_U_in_base_x, prps_U_in_base_y, prps_U_in_base_z, prps_Z_a_t, prps_Z_a_t_2,
-            prps_Z_a_t_3,
+        prps_U_x, prps_U_y, prps_U_z, prps_Z_a_t, prps_Z_a_t_2, prps_Z_a_t_3,
         ))
-    (
-    total_prps_x, total_prps_y, total_prps_z, total_prps_x_2, total_prps_y_2, total_prps_z_2,
-    ) = sums
+    Z_t_prps_x, Z_t_prps_y, Z_t_prps_z, Z_a_prps_x, Z_a_prps_y, Z_a_prps_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prps_x
-    Z_t_y = Z_p_y + total_prps_y
-    Z_t_z = Z_p_z + total_prps_z
+    Z_t_x = Z_p_x + Z_t_prps_x
+    Z_t_y = Z_p_y + Z_t_prps_y
+    Z_t_z = Z_p_z + Z_t_prps_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_prps_x_2
-    Z_a_y = Z_q_in_base_y + total_prps_y_2
-    Z_a_z = Z_q_in_base_z + total_prps_z_2
+    Z_a_x = Z_a_prps_x + Z_q_x
+    Z_a_y = Z_a_prps_y + Z_q_y
+    Z_a_z = Z_a_prps_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2222,68 +2273,62 @@ def _run_H(m, X):
             prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
-        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        # (prps-w_3) reciprocal vector 3
+        prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
         # (prps-H_a_1) moment of the column's unit force about the platform origin
-        prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y - prps_base_frame_yz*prps_q_in_base_z
-        prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z - prps_base_frame_zz*prps_q_in_base_x
-        prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x - prps_base_frame_xz*prps_q_in_base_y
+        prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z
+        prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x
+        prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y
         # (prps-H_a_3) moment of the column's unit force about the platform origin
-        prps_H_a_3_x = (
-        axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
-            axis_x_prps_axes2_in_base_y*prps_q_in_base_z
-        )
-        prps_H_a_3_y = (
-        axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
-            axis_x_prps_axes2_in_base_z*prps_q_in_base_x
-        )
-        prps_H_a_3_z = (
-        axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
-            axis_x_prps_axes2_in_base_x*prps_q_in_base_y
-        )
+        prps_H_a_3_x = prps_q_y*prps_w_3_z - prps_q_z*prps_w_3_y
+        prps_H_a_3_y = prps_q_z*prps_w_3_x - prps_q_x*prps_w_3_z
+        prps_H_a_3_z = prps_q_x*prps_w_3_y - prps_q_y*prps_w_3_x
         ok = (
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
+        # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
         out_H[_H_prps[2][leg]] = prps_base_frame_zz
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prps[3][leg]] = prps_H_a_1_x
         out_H[_H_prps[4][leg]] = prps_H_a_1_y
         out_H[_H_prps[5][leg]] = prps_H_a_1_z
-        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
-        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
-        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
+        # (prps-w_3) reciprocal vector 3
+        out_H[_H_prps[6][leg]] = prps_w_3_x
+        out_H[_H_prps[7][leg]] = prps_w_3_y
+        out_H[_H_prps[8][leg]] = prps_w_3_z
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
         out_H[_H_prps[11][leg]] = prps_H_a_3_z
@@ -2295,8 +2340,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2362,235 +2408,249 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
             prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
             prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-            prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_2_x,
-            prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass, prps_link2_mass,
-            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+            prps_base_point_z, prps_branch_2, prps_g_in_axes0_x, prps_g_in_axes0_y,
+            prps_g_in_axes0_z, prps_h_2_in_spec2_x, prps_h_2_in_spec2_y, prps_h_3_in_spec2_x,
+            prps_h_3_in_spec2_y, prps_link1_mass, prps_link2_mass, prps_platform_point_x,
+            prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
-        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
-        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
-        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
-        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
-        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
-        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
-        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y
+        prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z
+        prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x
         prps_S_dot_x = prps_S_dot_t + t_dot_x
         prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
         prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
-        prps_S_dot_tip_x = (
-        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
-            axis_x_prps_axes2_in_base_z*prps_S_dot_z
+        prps_S_dot_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_dot_x + axis_x_prps_axes2_y*prps_S_dot_y +
+            axis_x_prps_axes2_z*prps_S_dot_z
         )
         # (prps-qd_2) rate of joint 2
+        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
+        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+            axis_y_prps_axes2_z*prps_S_dot_z)
         )
         # (prps-W_2) centripetal tensor of link 2
-        prps_W_2_t = prps_qd_2*prps_qd_2
-        # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2
-        prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2
-        # (prps-H_a_1) moment of the column's unit force about the platform origin
-        prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y - prps_base_frame_yz*prps_q_in_base_z
-        prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z - prps_base_frame_zz*prps_q_in_base_x
-        prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x - prps_base_frame_xz*prps_q_in_base_y
-        # (prps-H_a_3) moment of the column's unit force about the platform origin
-        prps_H_a_3_x = (
-        axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
-            axis_x_prps_axes2_in_base_y*prps_q_in_base_z
-        )
-        prps_H_a_3_y = (
-        axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
-            axis_x_prps_axes2_in_base_z*prps_q_in_base_x
-        )
-        prps_H_a_3_z = (
-        axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
-            axis_x_prps_axes2_in_base_x*prps_q_in_base_y
-        )
+        prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2
         # (prps-a_p) acceleration of the connection point without its centripetal part
-        prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y
-        prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z
-        prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x
+        prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y
+        prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z
+        prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x
         # (prps-S_ddot) acceleration of the connection point
         prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
         prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
         prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
-        prps_S_ddot_tip_y = (
-        axis_y_prps_axes2_in_base_x*prps_S_ddot_x + axis_y_prps_axes2_in_base_y*prps_S_ddot_y +
-            axis_y_prps_axes2_in_base_z*prps_S_ddot_z
+        prps_S_ddot_in_axes2_y = (
+        axis_y_prps_axes2_x*prps_S_ddot_x + axis_y_prps_axes2_y*prps_S_ddot_y +
+            axis_y_prps_axes2_z*prps_S_ddot_z
         )
         # (prps-rel) acceleration of the connection point left to the joint accelerations
-        prps_rel_y = prps_S_ddot_tip_y - 2.0*prps_S_dot_tip_x*prps_qd_2
-        # (prps-qdd_1) acceleration of joint 1
-        prps_qdd_2 = inv_prps_root_2*prps_rel_y
-        # (prps-acc_3) acceleration of the reference point of link 3, less gravity
-        prps_acc_3_x = (
-        axis_x_prps_axes2_in_base_x*prps_S_ddot_x + axis_x_prps_axes2_in_base_y*prps_S_ddot_y +
-            axis_x_prps_axes2_in_base_z*prps_S_ddot_z - prps_g_r1_x
-        )
-        prps_acc_3_y = prps_S_ddot_tip_y - prps_g_r1_y
-        prps_acc_3_z = (
+        prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
+        # (prps-qdd_2) acceleration of joint 2
+        prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y
+        # (prps-acc_1) acceleration of the reference point of link 1, less gravity
+        prps_acc_1_in_axes0_z = (
         prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
-            prps_S_ddot_z*prps_base_frame_zz - prps_g_r0_z
+            prps_S_ddot_z*prps_base_frame_zz - prps_g_in_axes0_z
         )
+        # (prps-acc_3) acceleration of the reference point of link 3, less gravity
+        prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
+        prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
+        prps_acc_3_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
+            axis_x_prps_axes2_z*prps_S_ddot_z - prps_g_in_axes2_x
+        )
+        prps_acc_3_in_axes2_y = prps_S_ddot_in_axes2_y - prps_g_in_axes2_y
         # (prps-phi_3) inertia force of link 3 from its turning about its reference point
-        prps_phi_3_x = -prps_W_2_t*prps_h_3_x - prps_h_3_y*prps_qdd_2
+        prps_phi_3_in_axes2_x = (
+        prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x - prps_h_3_in_spec2_y*prps_qdd_2
+        )
         # (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prps_mu_2_z = (
-        prps_Jc_2_zz*prps_qdd_2 + prps_acc_3_y*prps_h_3_x + prps_g_r1_x*prps_h_2_y -
-            prps_acc_3_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x
+        prps_mu_2_in_axes2_z = (
+        prps_Jc_2_in_axes2_zz*prps_qdd_2 + prps_acc_3_in_axes2_y*prps_h_3_in_spec2_x +
+            prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_in_axes2_x*prps_h_3_in_spec2_y -
+            prps_g_in_axes2_y*prps_h_2_in_spec2_x
         )
         # (prps-T_1) inertia force of the links from 1 outwards, the last link left out
-        prps_T_1_z = prps_acc_3_z*prps_link1_mass + prps_acc_3_z*prps_link2_mass
+        prps_T_1_in_axes0_z = (
+        prps_acc_1_in_axes0_z*prps_link1_mass + prps_acc_1_in_axes0_z*prps_link2_mass
+        )
         # (prps-c) leg force on the platform without actuation and without the mass at the connection point
-        prps_c_y = prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_z - prps_h_3_x*prps_qdd_2
-        prps_c_in_base_x = (
-        axis_y_prps_axes2_in_base_x*prps_c_y - axis_x_prps_axes2_in_base_x*prps_phi_3_x -
-            prps_T_1_z*prps_base_frame_xz
+        prps_c_in_axes2_y = (
+        -inv_prps_root_2*prps_mu_2_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
+            prps_h_3_in_spec2_x*prps_qdd_2
         )
-        prps_c_in_base_y = (
-        axis_y_prps_axes2_in_base_y*prps_c_y - axis_x_prps_axes2_in_base_y*prps_phi_3_x -
-            prps_T_1_z*prps_base_frame_yz
+        prps_c_x = (
+        axis_y_prps_axes2_x*prps_c_in_axes2_y - axis_x_prps_axes2_x*prps_phi_3_in_axes2_x -
+            prps_T_1_in_axes0_z*prps_base_frame_xz
         )
-        prps_c_in_base_z = (
-        axis_y_prps_axes2_in_base_z*prps_c_y - axis_x_prps_axes2_in_base_z*prps_phi_3_x -
-            prps_T_1_z*prps_base_frame_zz
+        prps_c_y = (
+        axis_y_prps_axes2_y*prps_c_in_axes2_y - axis_x_prps_axes2_y*prps_phi_3_in_axes2_x -
+            prps_T_1_in_axes0_z*prps_base_frame_yz
+        )
+        prps_c_z = (
+        axis_y_prps_axes2_z*prps_c_in_axes2_y - axis_x_prps_axes2_z*prps_phi_3_in_axes2_x -
+            prps_T_1_in_axes0_z*prps_base_frame_zz
         )
         # (R_a) moment that actuators and external wrench must give
-        prps_R_a_t = prps_c_in_base_z*prps_q_in_base_y - prps_c_in_base_y*prps_q_in_base_z
-        prps_R_a_t_2 = prps_c_in_base_x*prps_q_in_base_z - prps_c_in_base_z*prps_q_in_base_x
-        prps_R_a_t_3 = prps_c_in_base_y*prps_q_in_base_x - prps_c_in_base_x*prps_q_in_base_y
+        prps_R_a_t = prps_c_y*prps_q_z - prps_c_z*prps_q_y
+        prps_R_a_t_2 = prps_c_z*prps_q_x - prps_c_x*prps_q_z
+        prps_R_a_t_3 = prps_c_x*prps_q_y - prps_c_y*prps_q_x
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
+        prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z
+        prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x
+        prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
+        prps_H_a_3_x = axis_x_prps_axes2_z*prps_q_y - axis_x_prps_axes2_y*prps_q_z
+        prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x
+        prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y
         ok = (
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        prps_c_in_base_x, prps_c_in_base_y, prps_c_in_base_z, prps_R_a_t, prps_R_a_t_2,
-            prps_R_a_t_3,
+        prps_c_x, prps_c_y, prps_c_z, prps_R_a_t, prps_R_a_t_2, prps_R_a_t_3,
         ))
+        # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
         out_H[_H_prps[2][leg]] = prps_base_frame_zz
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prps[3][leg]] = prps_H_a_1_x
         out_H[_H_prps[4][leg]] = prps_H_a_1_y
         out_H[_H_prps[5][leg]] = prps_H_a_1_z
-        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
-        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
-        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
+        # (prps-w_3) reciprocal vector 3
+        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_x
+        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_y
+        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_z
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
         out_H[_H_prps[11][leg]] = prps_H_a_3_z
-    (
-    total_prps_x, total_prps_y, total_prps_z, total_prps_x_2, total_prps_y_2, total_prps_z_2,
-    ) = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_prps_x, R_a_prps_y, R_a_prps_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_prps_x
-    R_t_y = f_p_y - total_prps_y
-    R_t_z = f_p_z - total_prps_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_prps_x_2
-    R_a_y = mu_p_in_base_y - total_prps_y_2
-    R_a_z = mu_p_in_base_z - total_prps_z_2
+    R_a_x = R_a_prps_x + mu_p_x
+    R_a_y = R_a_prps_y + mu_p_y
+    R_a_z = R_a_prps_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -2659,31 +2719,31 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
             - prps_base_point_z
         )
-        # (prps-q_1) displacement of joint 1
-        prps_q_1_t = (
+        prps_S_in_axes0_z = (
         prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz + prps_S_z*prps_base_frame_zz
         )
-        # (prps-S) from the base point to the connection point
-        prps_S_r0_x = (
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-q_2) displacement of joint 2
-        prps_q_2 = atan2(inv_prps_root_2*prps_S_r0_y, inv_prps_root_2*prps_S_r0_x)
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_q_2 = atan2(inv_prps_root_2*prps_S_in_axes0_y, inv_prps_root_2*prps_S_in_axes0_x)
         ok = (
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
-        out_q[_q_prps[0][leg]] = prps_q_1_t
+        # (prps-q_1) displacement of joint 1
+        out_q[_q_prps[0][leg]] = prps_S_in_axes0_z
+        # (prps-q_2) displacement of joint 2
         out_q[_q_prps[1][leg]] = prps_q_2
+        # (prps-q_3) displacement of joint 3
         out_q[_q_prps[2][leg]] = prps_root_2
     return ok, (out_q,)
 
@@ -2750,44 +2810,43 @@ def _run_joint_rates(m, X, V):
             prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
-        prps_S_dot_x = t_dot_x + omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
-        prps_S_dot_y = t_dot_y + omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
-        prps_S_dot_z = t_dot_z + omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
-        prps_S_dot_tip_x = (
+        prps_S_dot_x = t_dot_x + omega_y*prps_q_z - omega_z*prps_q_y
+        prps_S_dot_y = t_dot_y + omega_z*prps_q_x - omega_x*prps_q_z
+        prps_S_dot_z = t_dot_z + omega_x*prps_q_y - omega_y*prps_q_x
+        prps_S_dot_in_axes2_x = (
         prps_S_dot_x*(prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2) +
             prps_S_dot_y*(prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2) +
             prps_S_dot_z*(prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2)
         )
-        prps_S_dot_tip_z = (
+        prps_S_dot_in_axes2_z = (
         prps_S_dot_x*prps_base_frame_xz + prps_S_dot_y*prps_base_frame_yz +
             prps_S_dot_z*prps_base_frame_zz
         )
@@ -2801,9 +2860,12 @@ def _run_joint_rates(m, X, V):
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
-        out_qd[_qd_prps[0][leg]] = prps_S_dot_tip_z
+        # (prps-qd_1) rate of joint 1
+        out_qd[_qd_prps[0][leg]] = prps_S_dot_in_axes2_z
+        # (prps-qd_2) rate of joint 2
         out_qd[_qd_prps[1][leg]] = prps_qd_2
-        out_qd[_qd_prps[2][leg]] = prps_S_dot_tip_x
+        # (prps-qd_3) rate of joint 3
+        out_qd[_qd_prps[2][leg]] = prps_S_dot_in_axes2_x
     return ok, (out_qd,)
 
 
@@ -2882,87 +2944,88 @@ def _run_joint_accelerations(m, X, V, A):
             prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
-        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
-        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
-        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
-        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
-        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
-        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
-        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y
+        prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z
+        prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x
         prps_S_dot_x = prps_S_dot_t + t_dot_x
         prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
         prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
-        prps_S_dot_tip_x = (
-        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
-            axis_x_prps_axes2_in_base_z*prps_S_dot_z
+        prps_S_dot_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_dot_x + axis_x_prps_axes2_y*prps_S_dot_y +
+            axis_x_prps_axes2_z*prps_S_dot_z
         )
         # (prps-qd_2) rate of joint 2
+        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
+        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+            axis_y_prps_axes2_z*prps_S_dot_z)
         )
         # (prps-a_p) acceleration of the connection point without its centripetal part
-        prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y
-        prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z
-        prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x
+        prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y
+        prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z
+        prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x
         # (prps-S_ddot) acceleration of the connection point
         prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
         prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
         prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
-        prps_S_ddot_tip_z = (
+        prps_S_ddot_in_axes2_z = (
         prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
             prps_S_ddot_z*prps_base_frame_zz
         )
         # (prps-rel) acceleration of the connection point left to the joint accelerations
-        prps_rel_x = (
-        axis_x_prps_axes2_in_base_x*prps_S_ddot_x + axis_x_prps_axes2_in_base_y*prps_S_ddot_y +
-            axis_x_prps_axes2_in_base_z*prps_S_ddot_z + prps_qd_2*prps_qd_2*prps_root_2
+        prps_rel_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
+            axis_x_prps_axes2_z*prps_S_ddot_z + prps_qd_2*prps_qd_2*prps_root_2
         )
-        prps_rel_y = (
-        axis_y_prps_axes2_in_base_x*prps_S_ddot_x + axis_y_prps_axes2_in_base_y*prps_S_ddot_y +
-            axis_y_prps_axes2_in_base_z*prps_S_ddot_z - 2.0*prps_S_dot_tip_x*prps_qd_2
+        prps_rel_in_axes2_y = (
+        axis_y_prps_axes2_x*prps_S_ddot_x + axis_y_prps_axes2_y*prps_S_ddot_y +
+            axis_y_prps_axes2_z*prps_S_ddot_z - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         )
-        # (prps-qdd_1) acceleration of joint 1
-        prps_qdd_2 = inv_prps_root_2*prps_rel_y
+        # (prps-qdd_2) acceleration of joint 2
+        prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y
         ok = (
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
-        out_qdd[_qdd_prps[0][leg]] = prps_S_ddot_tip_z
+        # (prps-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_prps[0][leg]] = prps_S_ddot_in_axes2_z
+        # (prps-qdd_2) acceleration of joint 2
         out_qdd[_qdd_prps[1][leg]] = prps_qdd_2
-        out_qdd[_qdd_prps[2][leg]] = prps_rel_x
+        # (prps-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_prps[2][leg]] = prps_rel_in_axes2_x
     return ok, (out_qdd,)
 
 
@@ -3036,136 +3099,145 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        prps_Jc_2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        prps_Jc_2_in_axes2_zz, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
             prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
             prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-            prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_2_x,
-            prps_h_2_y, prps_h_3_x, prps_h_3_y, prps_link1_mass, prps_link2_mass, prps_link3_mass,
+            prps_base_point_z, prps_branch_2, prps_g_in_axes0_x, prps_g_in_axes0_y,
+            prps_g_in_axes0_z, prps_h_2_in_spec2_x, prps_h_2_in_spec2_y, prps_h_3_in_spec2_x,
+            prps_h_3_in_spec2_y, prps_link1_mass, prps_link2_mass, prps_link3_mass,
             prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
-        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_y_prps_axes2_in_base_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
-        axis_y_prps_axes2_in_base_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
-        axis_y_prps_axes2_in_base_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
-        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
-        prps_S_dot_t = omega_y*prps_q_in_base_z - omega_z*prps_q_in_base_y
-        prps_S_dot_t_2 = omega_z*prps_q_in_base_x - omega_x*prps_q_in_base_z
-        prps_S_dot_t_3 = omega_x*prps_q_in_base_y - omega_y*prps_q_in_base_x
+        axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        axis_x_prps_axes2_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_S_dot_t = omega_y*prps_q_z - omega_z*prps_q_y
+        prps_S_dot_t_2 = omega_z*prps_q_x - omega_x*prps_q_z
+        prps_S_dot_t_3 = omega_x*prps_q_y - omega_y*prps_q_x
         prps_S_dot_x = prps_S_dot_t + t_dot_x
         prps_S_dot_y = prps_S_dot_t_2 + t_dot_y
         prps_S_dot_z = prps_S_dot_t_3 + t_dot_z
-        prps_S_dot_tip_x = (
-        axis_x_prps_axes2_in_base_x*prps_S_dot_x + axis_x_prps_axes2_in_base_y*prps_S_dot_y +
-            axis_x_prps_axes2_in_base_z*prps_S_dot_z
+        prps_S_dot_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_dot_x + axis_x_prps_axes2_y*prps_S_dot_y +
+            axis_x_prps_axes2_z*prps_S_dot_z
         )
         # (prps-qd_2) rate of joint 2
+        axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
+        axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
+        axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_in_base_x*prps_S_dot_x +
-            axis_y_prps_axes2_in_base_y*prps_S_dot_y + axis_y_prps_axes2_in_base_z*prps_S_dot_z)
+        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+            axis_y_prps_axes2_z*prps_S_dot_z)
         )
         # (prps-W_2) centripetal tensor of link 2
-        prps_W_2_t = prps_qd_2*prps_qd_2
-        # (prps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prps_g_r1_x = prps_c_2*prps_g_r0_x + prps_g_r0_y*prps_s_2
-        prps_g_r1_y = prps_c_2*prps_g_r0_y - prps_g_r0_x*prps_s_2
+        prps_W_2_in_axes2_xx = -prps_qd_2*prps_qd_2
         # (prps-a_p) acceleration of the connection point without its centripetal part
-        prps_a_p_x = t_ddot_x + alpha_y*prps_q_in_base_z - alpha_z*prps_q_in_base_y
-        prps_a_p_y = t_ddot_y + alpha_z*prps_q_in_base_x - alpha_x*prps_q_in_base_z
-        prps_a_p_z = t_ddot_z + alpha_x*prps_q_in_base_y - alpha_y*prps_q_in_base_x
+        prps_a_p_x = t_ddot_x + alpha_y*prps_q_z - alpha_z*prps_q_y
+        prps_a_p_y = t_ddot_y + alpha_z*prps_q_x - alpha_x*prps_q_z
+        prps_a_p_z = t_ddot_z + alpha_x*prps_q_y - alpha_y*prps_q_x
         # (prps-S_ddot) acceleration of the connection point
         prps_S_ddot_x = prps_a_p_x + omega_y*prps_S_dot_t_3 - omega_z*prps_S_dot_t_2
         prps_S_ddot_y = prps_a_p_y + omega_z*prps_S_dot_t - omega_x*prps_S_dot_t_3
         prps_S_ddot_z = prps_a_p_z + omega_x*prps_S_dot_t_2 - omega_y*prps_S_dot_t
-        prps_S_ddot_tip_y = (
-        axis_y_prps_axes2_in_base_x*prps_S_ddot_x + axis_y_prps_axes2_in_base_y*prps_S_ddot_y +
-            axis_y_prps_axes2_in_base_z*prps_S_ddot_z
+        prps_S_ddot_in_axes2_y = (
+        axis_y_prps_axes2_x*prps_S_ddot_x + axis_y_prps_axes2_y*prps_S_ddot_y +
+            axis_y_prps_axes2_z*prps_S_ddot_z
         )
         # (prps-rel) acceleration of the connection point left to the joint accelerations
-        prps_rel_y = prps_S_ddot_tip_y - 2.0*prps_S_dot_tip_x*prps_qd_2
-        # (prps-qdd_1) acceleration of joint 1
-        prps_qdd_2 = inv_prps_root_2*prps_rel_y
-        # (prps-acc_3) acceleration of the reference point of link 3, less gravity
-        prps_acc_3_x = (
-        axis_x_prps_axes2_in_base_x*prps_S_ddot_x + axis_x_prps_axes2_in_base_y*prps_S_ddot_y +
-            axis_x_prps_axes2_in_base_z*prps_S_ddot_z - prps_g_r1_x
-        )
-        prps_acc_3_y = prps_S_ddot_tip_y - prps_g_r1_y
-        prps_acc_3_z = (
+        prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
+        # (prps-qdd_2) acceleration of joint 2
+        prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y
+        # (prps-acc_1) acceleration of the reference point of link 1, less gravity
+        prps_acc_1_in_axes0_z = (
         prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
-            prps_S_ddot_z*prps_base_frame_zz - prps_g_r0_z
+            prps_S_ddot_z*prps_base_frame_zz - prps_g_in_axes0_z
         )
+        # (prps-acc_3) acceleration of the reference point of link 3, less gravity
+        prps_g_in_axes2_x = prps_c_2*prps_g_in_axes0_x + prps_g_in_axes0_y*prps_s_2
+        prps_g_in_axes2_y = prps_c_2*prps_g_in_axes0_y - prps_g_in_axes0_x*prps_s_2
+        prps_acc_3_in_axes2_x = (
+        axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
+            axis_x_prps_axes2_z*prps_S_ddot_z - prps_g_in_axes2_x
+        )
+        prps_acc_3_in_axes2_y = prps_S_ddot_in_axes2_y - prps_g_in_axes2_y
         # (prps-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prps_mu_2_z = (
-        prps_Jc_2_zz*prps_qdd_2 + prps_acc_3_y*prps_h_3_x + prps_g_r1_x*prps_h_2_y -
-            prps_acc_3_x*prps_h_3_y - prps_g_r1_y*prps_h_2_x
+        prps_mu_2_in_axes2_z = (
+        prps_Jc_2_in_axes2_zz*prps_qdd_2 + prps_acc_3_in_axes2_y*prps_h_3_in_spec2_x +
+            prps_g_in_axes2_x*prps_h_2_in_spec2_y - prps_acc_3_in_axes2_x*prps_h_3_in_spec2_y -
+            prps_g_in_axes2_y*prps_h_2_in_spec2_x
         )
         # (prps-T_1) inertia force of the links from 1 outwards, the last link left out
-        prps_T_1_z = prps_acc_3_z*prps_link1_mass + prps_acc_3_z*prps_link2_mass
+        prps_T_1_in_axes0_z = (
+        prps_acc_1_in_axes0_z*prps_link1_mass + prps_acc_1_in_axes0_z*prps_link2_mass
+        )
         # (prps-c) leg force on the platform without actuation and without the mass at the connection point
-        prps_c_y = prps_W_2_t*prps_h_3_y - inv_prps_root_2*prps_mu_2_z - prps_h_3_x*prps_qdd_2
+        prps_c_in_axes2_y = (
+        -inv_prps_root_2*prps_mu_2_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
+            prps_h_3_in_spec2_x*prps_qdd_2
+        )
         # (prps-c_true) leg force on the platform without actuation, the last link's mass included
+        prps_c_true_in_axes2_x = (
+        prps_h_3_in_spec2_y*prps_qdd_2 - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_x -
+            prps_acc_3_in_axes2_x*prps_link3_mass
+        )
+        prps_c_true_in_axes2_y = prps_c_in_axes2_y - prps_acc_3_in_axes2_y*prps_link3_mass
+        prps_c_true_in_axes2_z = -prps_T_1_in_axes0_z - prps_acc_1_in_axes0_z*prps_link3_mass
         prps_c_true_x = (
-        prps_W_2_t*prps_h_3_x + prps_h_3_y*prps_qdd_2 - prps_acc_3_x*prps_link3_mass
+        axis_x_prps_axes2_x*prps_c_true_in_axes2_x + axis_y_prps_axes2_x*prps_c_true_in_axes2_y +
+            prps_base_frame_xz*prps_c_true_in_axes2_z
         )
-        prps_c_true_y = prps_c_y - prps_acc_3_y*prps_link3_mass
-        prps_c_true_z = -prps_T_1_z - prps_acc_3_z*prps_link3_mass
-        prps_c_true_in_base_x = (
-        axis_x_prps_axes2_in_base_x*prps_c_true_x + axis_y_prps_axes2_in_base_x*prps_c_true_y +
-            prps_base_frame_xz*prps_c_true_z
+        prps_c_true_y = (
+        axis_x_prps_axes2_y*prps_c_true_in_axes2_x + axis_y_prps_axes2_y*prps_c_true_in_axes2_y +
+            prps_base_frame_yz*prps_c_true_in_axes2_z
         )
-        prps_c_true_in_base_y = (
-        axis_x_prps_axes2_in_base_y*prps_c_true_x + axis_y_prps_axes2_in_base_y*prps_c_true_y +
-            prps_base_frame_yz*prps_c_true_z
-        )
-        prps_c_true_in_base_z = (
-        axis_x_prps_axes2_in_base_z*prps_c_true_x + axis_y_prps_axes2_in_base_z*prps_c_true_y +
-            prps_base_frame_zz*prps_c_true_z
+        prps_c_true_z = (
+        axis_x_prps_axes2_z*prps_c_true_in_axes2_x + axis_y_prps_axes2_z*prps_c_true_in_axes2_y +
+            prps_base_frame_zz*prps_c_true_in_axes2_z
         )
         ok = (
         ok & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
             (abs(prps_root_2) > _TOLERANCE * 0.75))
         )
-        out_leg_force[_leg_force_prps[0][leg]] = prps_c_true_in_base_x
-        out_leg_force[_leg_force_prps[1][leg]] = prps_c_true_in_base_y
-        out_leg_force[_leg_force_prps[2][leg]] = prps_c_true_in_base_z
+        # (prps-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_prps[0][leg]] = prps_c_true_x
+        out_leg_force[_leg_force_prps[1][leg]] = prps_c_true_y
+        out_leg_force[_leg_force_prps[2][leg]] = prps_c_true_z
+        # (prps-w_1) reciprocal vector 1
         out_drive[_drive_prps[0][leg]] = prps_base_frame_xz
         out_drive[_drive_prps[1][leg]] = prps_base_frame_yz
         out_drive[_drive_prps[2][leg]] = prps_base_frame_zz
-        out_drive[_drive_prps[3][leg]] = axis_x_prps_axes2_in_base_x
-        out_drive[_drive_prps[4][leg]] = axis_x_prps_axes2_in_base_y
-        out_drive[_drive_prps[5][leg]] = axis_x_prps_axes2_in_base_z
+        # (prps-w_3) reciprocal vector 3
+        out_drive[_drive_prps[3][leg]] = axis_x_prps_axes2_x
+        out_drive[_drive_prps[4][leg]] = axis_x_prps_axes2_y
+        out_drive[_drive_prps[5][leg]] = axis_x_prps_axes2_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3173,7 +3245,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3213,21 +3288,23 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        prps_b_r0_z, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
+        prps_b_in_axes0_z, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz,
             prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx,
             prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x, prps_base_point_y,
-            prps_base_point_z, prps_branch_2, prps_g_r0_x, prps_g_r0_y, prps_g_r0_z, prps_h_1_x,
-            prps_h_1_y, prps_h_1_z, prps_h_2_x, prps_h_2_y, prps_h_2_z, prps_h_3_x, prps_h_3_y,
-            prps_h_3_z, prps_link1_mass, prps_link2_mass, prps_platform_point_x,
-            prps_platform_point_y, prps_platform_point_z, prps_potential_t, prps_potential_t_2,
-            prps_potential_t_3, prps_potential_t_4,
+            prps_base_point_z, prps_branch_2, prps_g_in_axes0_x, prps_g_in_axes0_y,
+            prps_g_in_axes0_z, prps_h_1_in_spec0_x, prps_h_1_in_spec0_y, prps_h_1_in_spec0_z,
+            prps_h_2_in_spec2_x, prps_h_2_in_spec2_y, prps_h_2_in_spec2_z, prps_h_3_in_spec2_x,
+            prps_h_3_in_spec2_y, prps_h_3_in_spec2_z, prps_link1_mass, prps_link2_mass,
+            prps_platform_point_x, prps_platform_point_y, prps_platform_point_z, prps_potential_t,
+            prps_potential_t_2, prps_potential_t_3, prps_potential_t_4,
         ) = k
         # (prps-S) from the base point to the connection point
         prps_S_x = (
@@ -3242,35 +3319,34 @@ def _run_potential(m, X):
         t_z + R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
             - prps_base_point_z
         )
-        # (prps-q_1) displacement of joint 1
-        prps_q_1_t = (
+        prps_S_in_axes0_z = (
         prps_S_x*prps_base_frame_xz + prps_S_y*prps_base_frame_yz + prps_S_z*prps_base_frame_zz
         )
-        # (prps-S) from the base point to the connection point
-        prps_S_r0_x = (
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
         # (potential) potential energy
-        prps_potential_t_5 = prps_b_r0_z + prps_q_1_t
+        prps_potential_t_5 = prps_S_in_axes0_z + prps_b_in_axes0_z
         prps_potential_t_6 = (
-        prps_g_r0_x*(prps_h_1_x + prps_potential_t + prps_potential_t_3 + prps_c_2*prps_h_2_x +
-            prps_c_2*prps_h_3_x - prps_h_2_y*prps_s_2 - prps_h_3_y*prps_s_2) +
-            prps_g_r0_y*(prps_h_1_y + prps_potential_t_2 + prps_potential_t_4 +
-            prps_c_2*prps_h_2_y + prps_c_2*prps_h_3_y + prps_h_2_x*prps_s_2 + prps_h_3_x*prps_s_2)
-            + prps_g_r0_z*(prps_h_1_z + prps_h_2_z + prps_h_3_z +
+        prps_g_in_axes0_x*(prps_h_1_in_spec0_x + prps_potential_t + prps_potential_t_3 +
+            prps_c_2*prps_h_2_in_spec2_x + prps_c_2*prps_h_3_in_spec2_x -
+            prps_h_2_in_spec2_y*prps_s_2 - prps_h_3_in_spec2_y*prps_s_2) +
+            prps_g_in_axes0_y*(prps_h_1_in_spec0_y + prps_potential_t_2 + prps_potential_t_4 +
+            prps_c_2*prps_h_2_in_spec2_y + prps_c_2*prps_h_3_in_spec2_y +
+            prps_h_2_in_spec2_x*prps_s_2 + prps_h_3_in_spec2_x*prps_s_2) +
+            prps_g_in_axes0_z*(prps_h_1_in_spec0_z + prps_h_2_in_spec2_z + prps_h_3_in_spec2_z +
             prps_link1_mass*prps_potential_t_5 + prps_link2_mass*prps_potential_t_5)
         )
         ok = (
@@ -3280,9 +3356,10 @@ def _run_potential(m, X):
         sums = m.added(sums, leg, (
         prps_potential_t_6,
         ))
-    total_prps, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_prps
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3292,7 +3369,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3335,6 +3412,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3345,70 +3423,58 @@ def _run_condition(m, X):
             prps_branch_2, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
         ) = k
         # (prps-S) from the base point to the connection point
-        prps_q_in_base_x = (
+        prps_q_x = (
         R_xx*prps_platform_point_x + R_xy*prps_platform_point_y + R_xz*prps_platform_point_z
         )
-        prps_q_in_base_y = (
+        prps_q_y = (
         R_yx*prps_platform_point_x + R_yy*prps_platform_point_y + R_yz*prps_platform_point_z
         )
-        prps_q_in_base_z = (
+        prps_q_z = (
         R_zx*prps_platform_point_x + R_zy*prps_platform_point_y + R_zz*prps_platform_point_z
         )
-        prps_S_x = prps_q_in_base_x + t_x - prps_base_point_x
-        prps_S_y = prps_q_in_base_y + t_y - prps_base_point_y
-        prps_S_z = prps_q_in_base_z + t_z - prps_base_point_z
-        prps_S_r0_x = (
+        prps_S_x = prps_q_x + t_x - prps_base_point_x
+        prps_S_y = prps_q_y + t_y - prps_base_point_y
+        prps_S_z = prps_q_z + t_z - prps_base_point_z
+        prps_S_in_axes0_x = (
         prps_S_x*prps_base_frame_xx + prps_S_y*prps_base_frame_yx + prps_S_z*prps_base_frame_zx
         )
-        prps_S_r0_y = (
+        prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
         # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_r0_x*prps_S_r0_x + prps_S_r0_y*prps_S_r0_y
+        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
         # (prps-root_2) amplitude, with the sign of the branch
         prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        inv_prps_root_2 = 1.0/prps_root_2
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        prps_c_2 = inv_prps_root_2*prps_S_r0_x
+        inv_prps_root_2 = 1.0/prps_root_2
+        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_r0_y
-        # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_x_prps_axes2_in_base_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
-        axis_x_prps_axes2_in_base_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
-        axis_x_prps_axes2_in_base_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        # (prps-w_3) reciprocal vector 3
+        prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
+        prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
+        prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
+        # (prps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prps_pivot_size = abs(prps_rho2_2)
+        prps_pivot_size_2 = abs(prps_root_2)
+        prps_least_pivots = (
+        least(1.3333333333333333*sqrt(prps_pivot_size), 1.3333333333333333*prps_pivot_size_2)
+        )
         # (prps-H_a_1) moment of the column's unit force about the platform origin
-        prps_H_a_1_x = prps_base_frame_zz*prps_q_in_base_y - prps_base_frame_yz*prps_q_in_base_z
-        prps_H_a_1_y = prps_base_frame_xz*prps_q_in_base_z - prps_base_frame_zz*prps_q_in_base_x
-        prps_H_a_1_z = prps_base_frame_yz*prps_q_in_base_x - prps_base_frame_xz*prps_q_in_base_y
+        prps_H_a_1_x = prps_base_frame_zz*prps_q_y - prps_base_frame_yz*prps_q_z
+        prps_H_a_1_y = prps_base_frame_xz*prps_q_z - prps_base_frame_zz*prps_q_x
+        prps_H_a_1_z = prps_base_frame_yz*prps_q_x - prps_base_frame_xz*prps_q_y
         # (prps-H_a_3) moment of the column's unit force about the platform origin
-        prps_H_a_3_x = (
-        axis_x_prps_axes2_in_base_z*prps_q_in_base_y -
-            axis_x_prps_axes2_in_base_y*prps_q_in_base_z
-        )
-        prps_H_a_3_y = (
-        axis_x_prps_axes2_in_base_x*prps_q_in_base_z -
-            axis_x_prps_axes2_in_base_z*prps_q_in_base_x
-        )
-        prps_H_a_3_z = (
-        axis_x_prps_axes2_in_base_y*prps_q_in_base_x -
-            axis_x_prps_axes2_in_base_x*prps_q_in_base_y
-        )
+        prps_H_a_3_x = prps_q_y*prps_w_3_z - prps_q_z*prps_w_3_y
+        prps_H_a_3_y = prps_q_z*prps_w_3_x - prps_q_x*prps_w_3_z
+        prps_H_a_3_z = prps_q_x*prps_w_3_y - prps_q_y*prps_w_3_x
         # (spread) rms distance of the platform points from their centroid
-        prps_spread_t = b_c_x - prps_platform_point_x
-        prps_spread_t_2 = b_c_y - prps_platform_point_y
-        prps_spread_t_3 = b_c_z - prps_platform_point_z
+        prps_spread_t = b_c_in_platform_x - prps_platform_point_x
+        prps_spread_t_2 = b_c_in_platform_y - prps_platform_point_y
+        prps_spread_t_3 = b_c_in_platform_z - prps_platform_point_z
         prps_spread_t_4 = (
         prps_spread_t*prps_spread_t + prps_spread_t_2*prps_spread_t_2 +
             prps_spread_t_3*prps_spread_t_3
-        )
-        # (prps-rho2_2) squared amplitude
-        prps_pivot_size = abs(prps_rho2_2)
-        # (prps-w_2) reciprocal vector 2
-        prps_pivot_size_2 = abs(prps_root_2)
-        # (prps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prps_least_pivots = (
-        least(1.3333333333333333*sqrt(prps_pivot_size), 1.3333333333333333*prps_pivot_size_2)
         )
         clear = (
         clear & m.every(leg, (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) &
@@ -3417,22 +3483,28 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         prps_spread_t_4,
         ))
+        # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
         out_H[_H_prps[1][leg]] = prps_base_frame_yz
         out_H[_H_prps[2][leg]] = prps_base_frame_zz
+        # (prps-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prps[3][leg]] = prps_H_a_1_x
         out_H[_H_prps[4][leg]] = prps_H_a_1_y
         out_H[_H_prps[5][leg]] = prps_H_a_1_z
-        out_H[_H_prps[6][leg]] = axis_x_prps_axes2_in_base_x
-        out_H[_H_prps[7][leg]] = axis_x_prps_axes2_in_base_y
-        out_H[_H_prps[8][leg]] = axis_x_prps_axes2_in_base_z
+        # (prps-w_3) reciprocal vector 3
+        out_H[_H_prps[6][leg]] = prps_w_3_x
+        out_H[_H_prps[7][leg]] = prps_w_3_y
+        out_H[_H_prps[8][leg]] = prps_w_3_z
+        # (prps-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_prps[9][leg]] = prps_H_a_3_x
         out_H[_H_prps[10][leg]] = prps_H_a_3_y
         out_H[_H_prps[11][leg]] = prps_H_a_3_z
+        # (prps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_prps[0][leg]] = prps_least_pivots
-    total_prps, = sums
+    spread_prps, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_prps)
+    spread = sqrt(spread_prps)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

@@ -526,20 +526,20 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rrrs = 0;
-    real total_rrrs_x = 0;
-    real total_rrrs_y = 0;
-    real total_rrrs_z = 0;
-    real total_rrrs_xx = 0;
-    real total_rrrs_xy = 0;
-    real total_rrrs_xz = 0;
-    real total_rrrs_yy = 0;
-    real total_rrrs_yz = 0;
-    real total_rrrs_zz = 0;
-    real total_rrrs_x_2 = 0;
-    real total_rrrs_y_2 = 0;
-    real total_rrrs_z_2 = 0;
-    real total_rrrs_2 = 0;
+    real m_star_rrrs = 0;
+    real h_star_rrrs_in_platform_x = 0;
+    real h_star_rrrs_in_platform_y = 0;
+    real h_star_rrrs_in_platform_z = 0;
+    real J_star_rrrs_in_platform_xx = 0;
+    real J_star_rrrs_in_platform_xy = 0;
+    real J_star_rrrs_in_platform_xz = 0;
+    real J_star_rrrs_in_platform_yy = 0;
+    real J_star_rrrs_in_platform_yz = 0;
+    real J_star_rrrs_in_platform_zz = 0;
+    real b_c_rrrs_in_platform_x = 0;
+    real b_c_rrrs_in_platform_y = 0;
+    real b_c_rrrs_in_platform_z = 0;
+    real legs_size_rrrs = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -628,83 +628,114 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real rrrs_size_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x;
         const real rrrs_size_t_3 = R(6.238219509759999e-07) + rrrs_size_t + rrrs_size_t_2;
         const real rrrs_size = root(rrrs_size_t_3);
+        /* (rrrs-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrrs_h_1_in_spec1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass;
+        const real rrrs_h_1_in_spec1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass;
+        const real rrrs_h_1_in_spec1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass;
+        /* (rrrs-J_1) inertia tensor of link 1 about the origin of link 1 */
+        const real rrrs_J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
+        const real rrrs_J_1_t_2 = rrrs_J_1_t +
+            rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
+            rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
+        const real rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t -
+            rrrs_J_1_t_2);
+        /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
+        const real rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
+        const real rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
+        const real rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        /* (rrrs-J_2) inertia tensor of link 2 about the origin of link 2 */
+        const real rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x;
+        const real rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y;
+        const real rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z;
+        const real rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3;
+        const real rrrs_J_2_in_spec2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t -
+            rrrs_J_2_t_4);
+        const real rrrs_J_2_in_spec2_xy = rrrs_link2_inertia_xy -
+            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
+        const real rrrs_J_2_in_spec2_xz = rrrs_link2_inertia_xz -
+            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        const real rrrs_J_2_in_spec2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 -
+            rrrs_J_2_t_4);
+        const real rrrs_J_2_in_spec2_yz = rrrs_link2_inertia_yz -
+            rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        const real rrrs_J_2_in_spec2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 -
+            rrrs_J_2_t_4);
+        /* (rrrs-rho_tip_3) connection point to the centre of mass of link 3 */
+        const real rrrs_rho_tip_3_in_spec3_x = rrrs_link3_centre_of_mass_x -
+            rrrs_platform_joint_offset_x;
+        /* (rrrs-h_3) first moment of link 3 about the connection point */
+        const real rrrs_h_3_in_spec3_x = rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
+        const real rrrs_h_3_in_spec3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
+        const real rrrs_h_3_in_spec3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
+        /* (rrrs-J_3) inertia tensor of link 3 about the connection point */
+        const real rrrs_J_3_t = rrrs_rho_tip_3_in_spec3_x*rrrs_rho_tip_3_in_spec3_x;
+        const real rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y;
+        const real rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z;
+        const real rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3;
+        const real rrrs_J_3_in_spec3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t -
+            rrrs_J_3_t_4);
+        const real rrrs_J_3_in_spec3_xy = rrrs_link3_inertia_xy -
+            rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
+        const real rrrs_J_3_in_spec3_xz = rrrs_link3_inertia_xz -
+            rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x;
+        const real rrrs_J_3_in_spec3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 -
+            rrrs_J_3_t_4);
+        const real rrrs_J_3_in_spec3_yz = rrrs_link3_inertia_yz -
+            rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
+        const real rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 -
+            rrrs_J_3_t_4);
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
         const real rrrs_Kd_2_t = R(0.5)*rrrs_size_t;
         const real rrrs_Kd_2_t_2 = R(0.5)*rrrs_size_t_2;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3;
-        /* (rrrs-xi_2) the vector from joint 2 to the connection point, resolved along link 2 */
+        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = 1/rrrs_size_t;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = 1/rrrs_size_t_2;
-        /* (rrrs-rho_tip_3) connection point to the centre of mass of link 3 */
-        const real rrrs_rho_tip_3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x;
-        /* (rrrs-h_3) first moment of link 3 about the connection point */
-        const real rrrs_h_3_x = rrrs_link3_mass*rrrs_rho_tip_3_x;
-        const real rrrs_h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
-        const real rrrs_h_3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
         /* (rrrs-w_3) reciprocal vector 3 */
-        const real inv_rrrs_platform_joint_offset_x = 1/rrrs_platform_joint_offset_x;
+        const real rrrs_w_3_in_axes3_y = 1/rrrs_platform_joint_offset_x;
         /* (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real rrrs_d_phi_3_t = inv_rrrs_platform_joint_offset_x*rrrs_h_3_y;
-        /* (rrrs-J_3) inertia tensor of link 3 about the connection point */
-        const real rrrs_J_3_t = rrrs_rho_tip_3_x*rrrs_rho_tip_3_x;
-        const real rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y;
-        const real rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z;
-        const real rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3;
-        const real rrrs_J_3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t -
-            rrrs_J_3_t_4);
-        const real rrrs_J_3_xy = rrrs_link3_inertia_xy -
-            rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_x;
-        const real rrrs_J_3_xz = rrrs_link3_inertia_xz -
-            rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_x;
-        const real rrrs_J_3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 -
-            rrrs_J_3_t_4);
-        const real rrrs_J_3_yz = rrrs_link3_inertia_yz -
-            rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
-        const real rrrs_J_3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 -
-            rrrs_J_3_t_4);
-        /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rrrs_d_Gamma_3_t = inv_rrrs_platform_joint_offset_x*rrrs_J_3_zz;
-        const real rrrs_d_Gamma_3_y = rrrs_d_Gamma_3_t + rrrs_h_3_x;
-        /* (rrrs-J_2) inertia tensor of link 2 about the origin of link 2 */
-        const real rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x;
-        const real rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y;
-        const real rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z;
-        const real rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3;
-        const real rrrs_J_2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t -
-            rrrs_J_2_t_4);
-        const real rrrs_J_2_xy = rrrs_link2_inertia_xy -
-            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
-        const real rrrs_J_2_xz = rrrs_link2_inertia_xz -
-            rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
-        const real rrrs_J_2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 -
-            rrrs_J_2_t_4);
-        const real rrrs_J_2_yz = rrrs_link2_inertia_yz -
-            rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
-        const real rrrs_J_2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 -
-            rrrs_J_2_t_4);
+        const real rrrs_d_phi_3_t = rrrs_h_3_in_spec3_y*rrrs_w_3_in_axes3_y;
         /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real rrrs_Jc_2_zz = rrrs_J_2_zz + rrrs_J_3_zz;
-        /* (rrrs-h_2) first moment of link 2 about the origin of link 2 */
-        const real rrrs_h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
-        const real rrrs_h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
-        const real rrrs_h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
-        /* (rrrs-J_1) inertia tensor of link 1 about the origin of link 1 */
-        const real rrrs_J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
-        const real rrrs_J_1_t_2 = rrrs_J_1_t +
-            rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
-            rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
-        const real rrrs_J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t -
-            rrrs_J_1_t_2);
+        const real rrrs_Jc_2_in_axes2_zz = rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz;
+        /* (rrrs-trace_J_3) half the trace of that inertia tensor */
+        const real rrrs_trace_J_3 = R(0.5)*rrrs_J_3_in_spec3_xx + R(0.5)*rrrs_J_3_in_spec3_yy +
+            R(0.5)*rrrs_J_3_in_spec3_zz;
+        /* (rrrs-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real rrrs_Sigma_3_in_axes3_xx = rrrs_trace_J_3 - rrrs_J_3_in_spec3_xx;
+        const real rrrs_Sigma_3_in_axes3_yy = rrrs_trace_J_3 - rrrs_J_3_in_spec3_yy;
+        const real rrrs_Sigma_3_in_axes3_zz = rrrs_trace_J_3 - rrrs_J_3_in_spec3_zz;
+        /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real rrrs_d_Gamma_3_t = rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y;
+        const real rrrs_d_Gamma_3_in_axes3_y = rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x;
+        /* (rrrs-trace_J_2) half the trace of that inertia tensor */
+        const real rrrs_trace_J_2 = R(0.5)*rrrs_J_2_in_spec2_xx + R(0.5)*rrrs_J_2_in_spec2_yy +
+            R(0.5)*rrrs_J_2_in_spec2_zz;
+        /* (rrrs-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real rrrs_Sigma_2_in_axes2_xx = rrrs_trace_J_2 - rrrs_J_2_in_spec2_xx;
+        const real rrrs_Sigma_2_in_axes2_yy = rrrs_trace_J_2 - rrrs_J_2_in_spec2_yy;
+        const real rrrs_Sigma_2_in_axes2_zz = rrrs_trace_J_2 - rrrs_J_2_in_spec2_zz;
+        /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real rrrs_mu_2_t = gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy +
+            gravity_z*rrrs_base_frame_zy;
+        const real rrrs_mu_2_t_2 = gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz +
+            gravity_z*rrrs_base_frame_zz;
+        const real rrrs_g_in_axes1_z = gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx
+            + gravity_z*rrrs_base_frame_zx;
+        /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rrrs_size_t_3 = 1/rrrs_size_t_3;
+        const real inv_rrrs_rho2_2_t = 1/rrrs_rho2_2_t;
+        const real inv_rrrs_size = 1/rrrs_size;
         /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrrs_d_c_yy = -inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_y -
-            inv_rrrs_platform_joint_offset_x*rrrs_h_3_x;
+        const real rrrs_d_c_in_axes3_yy = -rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_y -
+            rrrs_h_3_in_spec3_x*rrrs_w_3_in_axes3_y;
         /* (h_star) first moment about the platform origin */
         const real rrrs_h_star_t = rrrs_link3_mass*rrrs_platform_point_x;
         const real rrrs_h_star_t_2 = rrrs_link3_mass*rrrs_platform_point_y;
@@ -720,74 +751,42 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real rrrs_J_star_t_8 = rrrs_link3_mass*(rrrs_J_star_t_2 - rrrs_J_star_t_4);
         const real rrrs_J_star_t_9 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z;
         const real rrrs_J_star_t_10 = rrrs_link3_mass*(rrrs_J_star_t_3 - rrrs_J_star_t_4);
-        /* (rrrs-trace_J_3) half the trace of that inertia tensor */
-        const real rrrs_trace_J_3 = R(0.5)*rrrs_J_3_xx + R(0.5)*rrrs_J_3_yy + R(0.5)*rrrs_J_3_zz;
-        /* (rrrs-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real rrrs_Sigma_3_xx = rrrs_trace_J_3 - rrrs_J_3_xx;
-        const real rrrs_Sigma_3_yy = rrrs_trace_J_3 - rrrs_J_3_yy;
-        const real rrrs_Sigma_3_zz = rrrs_trace_J_3 - rrrs_J_3_zz;
-        /* (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rrrs_g_r0_x = gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy +
-            gravity_z*rrrs_base_frame_zy;
-        const real rrrs_g_r0_y = gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz +
-            gravity_z*rrrs_base_frame_zz;
-        const real rrrs_g_r0_z = gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx +
-            gravity_z*rrrs_base_frame_zx;
-        /* (rrrs-trace_J_2) half the trace of that inertia tensor */
-        const real rrrs_trace_J_2 = R(0.5)*rrrs_J_2_xx + R(0.5)*rrrs_J_2_yy + R(0.5)*rrrs_J_2_zz;
-        /* (rrrs-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real rrrs_Sigma_2_xx = rrrs_trace_J_2 - rrrs_J_2_xx;
-        const real rrrs_Sigma_2_yy = rrrs_trace_J_2 - rrrs_J_2_yy;
-        const real rrrs_Sigma_2_zz = rrrs_trace_J_2 - rrrs_J_2_zz;
-        /* (rrrs-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrrs_h_1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass;
-        const real rrrs_h_1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass;
-        const real rrrs_h_1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass;
         /* (potential) potential energy */
-        const real rrrs_b_r0_x = rrrs_base_frame_xy*rrrs_base_point_x +
+        const real rrrs_potential_t = rrrs_base_frame_xy*rrrs_base_point_x +
             rrrs_base_frame_yy*rrrs_base_point_y + rrrs_base_frame_zy*rrrs_base_point_z;
-        const real rrrs_b_r0_y = rrrs_base_frame_xz*rrrs_base_point_x +
+        const real rrrs_potential_t_2 = rrrs_base_frame_xz*rrrs_base_point_x +
             rrrs_base_frame_yz*rrrs_base_point_y + rrrs_base_frame_zz*rrrs_base_point_z;
-        const real rrrs_b_r0_z = rrrs_base_frame_xx*rrrs_base_point_x +
+        const real rrrs_b_in_spec1_x = rrrs_base_frame_xx*rrrs_base_point_x +
             rrrs_base_frame_yx*rrrs_base_point_y + rrrs_base_frame_zx*rrrs_base_point_z;
-        const real rrrs_potential_t = rrrs_b_r0_z*rrrs_link1_mass;
-        const real rrrs_potential_t_2 = rrrs_link2_mass*(rrrs_b_r0_z + rrrs_joint2_offset_x);
-        /* (rrrs-rho2_1) squared amplitude */
-        const real inv_rrrs_size_t_3 = 1/rrrs_size_t_3;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real inv_rrrs_rho2_2_t_4 = 1/rrrs_rho2_2_t;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real inv_rrrs_size = 1/rrrs_size;
-        model->inv_rrrs_platform_joint_offset_x[leg] = inv_rrrs_platform_joint_offset_x;
-        model->inv_rrrs_rho2_2_t_4[leg] = inv_rrrs_rho2_2_t_4;
+        const real rrrs_potential_t_3 = rrrs_b_in_spec1_x*rrrs_link1_mass;
+        const real rrrs_potential_t_4 = rrrs_link2_mass*(rrrs_b_in_spec1_x +
+            rrrs_joint2_offset_x);
+        model->inv_rrrs_rho2_2_t[leg] = inv_rrrs_rho2_2_t;
         model->inv_rrrs_size[leg] = inv_rrrs_size;
         model->inv_rrrs_size_t[leg] = inv_rrrs_size_t;
         model->inv_rrrs_size_t_2[leg] = inv_rrrs_size_t_2;
         model->inv_rrrs_size_t_3[leg] = inv_rrrs_size_t_3;
-        model->rrrs_J_1_xx[leg] = rrrs_J_1_xx;
-        model->rrrs_J_2_xx[leg] = rrrs_J_2_xx;
-        model->rrrs_J_2_xy[leg] = rrrs_J_2_xy;
-        model->rrrs_J_2_xz[leg] = rrrs_J_2_xz;
-        model->rrrs_J_2_yy[leg] = rrrs_J_2_yy;
-        model->rrrs_J_2_yz[leg] = rrrs_J_2_yz;
-        model->rrrs_J_3_xx[leg] = rrrs_J_3_xx;
-        model->rrrs_J_3_xy[leg] = rrrs_J_3_xy;
-        model->rrrs_J_3_xz[leg] = rrrs_J_3_xz;
-        model->rrrs_J_3_yy[leg] = rrrs_J_3_yy;
-        model->rrrs_J_3_yz[leg] = rrrs_J_3_yz;
-        model->rrrs_J_3_zz[leg] = rrrs_J_3_zz;
-        model->rrrs_Jc_2_zz[leg] = rrrs_Jc_2_zz;
+        model->rrrs_J_1_in_spec1_xx[leg] = rrrs_J_1_in_spec1_xx;
+        model->rrrs_J_2_in_spec2_xx[leg] = rrrs_J_2_in_spec2_xx;
+        model->rrrs_J_2_in_spec2_xy[leg] = rrrs_J_2_in_spec2_xy;
+        model->rrrs_J_2_in_spec2_xz[leg] = rrrs_J_2_in_spec2_xz;
+        model->rrrs_J_2_in_spec2_yy[leg] = rrrs_J_2_in_spec2_yy;
+        model->rrrs_J_2_in_spec2_yz[leg] = rrrs_J_2_in_spec2_yz;
+        model->rrrs_J_3_in_spec3_xx[leg] = rrrs_J_3_in_spec3_xx;
+        model->rrrs_J_3_in_spec3_xy[leg] = rrrs_J_3_in_spec3_xy;
+        model->rrrs_J_3_in_spec3_xz[leg] = rrrs_J_3_in_spec3_xz;
+        model->rrrs_J_3_in_spec3_yy[leg] = rrrs_J_3_in_spec3_yy;
+        model->rrrs_J_3_in_spec3_yz[leg] = rrrs_J_3_in_spec3_yz;
+        model->rrrs_J_3_in_spec3_zz[leg] = rrrs_J_3_in_spec3_zz;
+        model->rrrs_Jc_2_in_axes2_zz[leg] = rrrs_Jc_2_in_axes2_zz;
         model->rrrs_Kd_2_t[leg] = rrrs_Kd_2_t;
         model->rrrs_Kd_2_t_2[leg] = rrrs_Kd_2_t_2;
-        model->rrrs_Sigma_2_xx[leg] = rrrs_Sigma_2_xx;
-        model->rrrs_Sigma_2_yy[leg] = rrrs_Sigma_2_yy;
-        model->rrrs_Sigma_2_zz[leg] = rrrs_Sigma_2_zz;
-        model->rrrs_Sigma_3_xx[leg] = rrrs_Sigma_3_xx;
-        model->rrrs_Sigma_3_yy[leg] = rrrs_Sigma_3_yy;
-        model->rrrs_Sigma_3_zz[leg] = rrrs_Sigma_3_zz;
-        model->rrrs_b_r0_x[leg] = rrrs_b_r0_x;
-        model->rrrs_b_r0_y[leg] = rrrs_b_r0_y;
+        model->rrrs_Sigma_2_in_axes2_xx[leg] = rrrs_Sigma_2_in_axes2_xx;
+        model->rrrs_Sigma_2_in_axes2_yy[leg] = rrrs_Sigma_2_in_axes2_yy;
+        model->rrrs_Sigma_2_in_axes2_zz[leg] = rrrs_Sigma_2_in_axes2_zz;
+        model->rrrs_Sigma_3_in_axes3_xx[leg] = rrrs_Sigma_3_in_axes3_xx;
+        model->rrrs_Sigma_3_in_axes3_yy[leg] = rrrs_Sigma_3_in_axes3_yy;
+        model->rrrs_Sigma_3_in_axes3_zz[leg] = rrrs_Sigma_3_in_axes3_zz;
         model->rrrs_base_frame_xx[leg] = rrrs_base_frame_xx;
         model->rrrs_base_frame_xy[leg] = rrrs_base_frame_xy;
         model->rrrs_base_frame_xz[leg] = rrrs_base_frame_xz;
@@ -802,95 +801,104 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         model->rrrs_base_point_z[leg] = rrrs_base_point_z;
         model->rrrs_branch_1[leg] = rrrs_branch_1;
         model->rrrs_branch_2[leg] = rrrs_branch_2;
+        model->rrrs_d_Gamma_3_in_axes3_y[leg] = rrrs_d_Gamma_3_in_axes3_y;
         model->rrrs_d_Gamma_3_t[leg] = rrrs_d_Gamma_3_t;
-        model->rrrs_d_Gamma_3_y[leg] = rrrs_d_Gamma_3_y;
-        model->rrrs_d_c_yy[leg] = rrrs_d_c_yy;
+        model->rrrs_d_c_in_axes3_yy[leg] = rrrs_d_c_in_axes3_yy;
         model->rrrs_d_phi_3_t[leg] = rrrs_d_phi_3_t;
-        model->rrrs_g_r0_x[leg] = rrrs_g_r0_x;
-        model->rrrs_g_r0_y[leg] = rrrs_g_r0_y;
-        model->rrrs_g_r0_z[leg] = rrrs_g_r0_z;
-        model->rrrs_h_1_x[leg] = rrrs_h_1_x;
-        model->rrrs_h_1_y[leg] = rrrs_h_1_y;
-        model->rrrs_h_1_z[leg] = rrrs_h_1_z;
-        model->rrrs_h_2_x[leg] = rrrs_h_2_x;
-        model->rrrs_h_2_y[leg] = rrrs_h_2_y;
-        model->rrrs_h_2_z[leg] = rrrs_h_2_z;
-        model->rrrs_h_3_x[leg] = rrrs_h_3_x;
-        model->rrrs_h_3_y[leg] = rrrs_h_3_y;
-        model->rrrs_h_3_z[leg] = rrrs_h_3_z;
+        model->rrrs_g_in_axes1_z[leg] = rrrs_g_in_axes1_z;
+        model->rrrs_h_1_in_spec1_x[leg] = rrrs_h_1_in_spec1_x;
+        model->rrrs_h_1_in_spec1_y[leg] = rrrs_h_1_in_spec1_y;
+        model->rrrs_h_1_in_spec1_z[leg] = rrrs_h_1_in_spec1_z;
+        model->rrrs_h_2_in_spec2_x[leg] = rrrs_h_2_in_spec2_x;
+        model->rrrs_h_2_in_spec2_y[leg] = rrrs_h_2_in_spec2_y;
+        model->rrrs_h_2_in_spec2_z[leg] = rrrs_h_2_in_spec2_z;
+        model->rrrs_h_3_in_spec3_x[leg] = rrrs_h_3_in_spec3_x;
+        model->rrrs_h_3_in_spec3_y[leg] = rrrs_h_3_in_spec3_y;
+        model->rrrs_h_3_in_spec3_z[leg] = rrrs_h_3_in_spec3_z;
         model->rrrs_joint2_offset_x[leg] = rrrs_joint2_offset_x;
         model->rrrs_joint3_offset_x[leg] = rrrs_joint3_offset_x;
         model->rrrs_link1_mass[leg] = rrrs_link1_mass;
         model->rrrs_link2_mass[leg] = rrrs_link2_mass;
         model->rrrs_link3_mass[leg] = rrrs_link3_mass;
+        model->rrrs_mu_2_t[leg] = rrrs_mu_2_t;
+        model->rrrs_mu_2_t_2[leg] = rrrs_mu_2_t_2;
         model->rrrs_platform_joint_offset_x[leg] = rrrs_platform_joint_offset_x;
         model->rrrs_platform_point_x[leg] = rrrs_platform_point_x;
         model->rrrs_platform_point_y[leg] = rrrs_platform_point_y;
         model->rrrs_platform_point_z[leg] = rrrs_platform_point_z;
         model->rrrs_potential_t[leg] = rrrs_potential_t;
         model->rrrs_potential_t_2[leg] = rrrs_potential_t_2;
+        model->rrrs_potential_t_3[leg] = rrrs_potential_t_3;
+        model->rrrs_potential_t_4[leg] = rrrs_potential_t_4;
         model->rrrs_rho2_2_t[leg] = rrrs_rho2_2_t;
         model->rrrs_size[leg] = rrrs_size;
         model->rrrs_size_t_3[leg] = rrrs_size_t_3;
-        total_rrrs += leg < 3 ? rrrs_link3_mass : 0;
-        total_rrrs_x += leg < 3 ? rrrs_h_star_t : 0;
-        total_rrrs_y += leg < 3 ? rrrs_h_star_t_2 : 0;
-        total_rrrs_z += leg < 3 ? rrrs_h_star_t_3 : 0;
-        total_rrrs_xx += leg < 3 ? rrrs_J_star_t_5 : 0;
-        total_rrrs_xy += leg < 3 ? rrrs_J_star_t_6 : 0;
-        total_rrrs_xz += leg < 3 ? rrrs_J_star_t_7 : 0;
-        total_rrrs_yy += leg < 3 ? rrrs_J_star_t_8 : 0;
-        total_rrrs_yz += leg < 3 ? rrrs_J_star_t_9 : 0;
-        total_rrrs_zz += leg < 3 ? rrrs_J_star_t_10 : 0;
-        total_rrrs_x_2 += leg < 3 ? rrrs_platform_point_x : 0;
-        total_rrrs_y_2 += leg < 3 ? rrrs_platform_point_y : 0;
-        total_rrrs_z_2 += leg < 3 ? rrrs_platform_point_z : 0;
-        total_rrrs_2 += leg < 3 ? rrrs_size_t_3 : 0;
+        model->rrrs_w_3_in_axes3_y[leg] = rrrs_w_3_in_axes3_y;
+        m_star_rrrs += leg < 3 ? rrrs_link3_mass : 0;
+        h_star_rrrs_in_platform_x += leg < 3 ? rrrs_h_star_t : 0;
+        h_star_rrrs_in_platform_y += leg < 3 ? rrrs_h_star_t_2 : 0;
+        h_star_rrrs_in_platform_z += leg < 3 ? rrrs_h_star_t_3 : 0;
+        J_star_rrrs_in_platform_xx += leg < 3 ? -rrrs_J_star_t_5 : 0;
+        J_star_rrrs_in_platform_xy += leg < 3 ? -rrrs_J_star_t_6 : 0;
+        J_star_rrrs_in_platform_xz += leg < 3 ? -rrrs_J_star_t_7 : 0;
+        J_star_rrrs_in_platform_yy += leg < 3 ? -rrrs_J_star_t_8 : 0;
+        J_star_rrrs_in_platform_yz += leg < 3 ? -rrrs_J_star_t_9 : 0;
+        J_star_rrrs_in_platform_zz += leg < 3 ? -rrrs_J_star_t_10 : 0;
+        b_c_rrrs_in_platform_x += leg < 3 ? rrrs_platform_point_x : 0;
+        b_c_rrrs_in_platform_y += leg < 3 ? rrrs_platform_point_y : 0;
+        b_c_rrrs_in_platform_z += leg < 3 ? rrrs_platform_point_z : 0;
+        legs_size_rrrs += leg < 3 ? rrrs_size_t_3 : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_rrrs;
+    const real m_star = m_star_rrrs + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_rrrs_x;
-    const real h_star_y = h_star_t_2 + total_rrrs_y;
-    const real h_star_z = h_star_t_3 + total_rrrs_z;
+    const real h_star_in_platform_x = h_star_rrrs_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_rrrs_in_platform_y + h_star_t_2;
+    const real h_star_in_platform_z = h_star_rrrs_in_platform_z + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_rrrs_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_rrrs_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_rrrs_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrs_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrs_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrs_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_rrrs_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_rrrs_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_rrrs_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_rrrs_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_rrrs_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_rrrs_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_rrrs_x_2;
-    const real b_c_y = R(0.3333333333333333)*total_rrrs_y_2;
-    const real b_c_z = R(0.3333333333333333)*total_rrrs_z_2;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rrrs_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rrrs_in_platform_y;
+    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rrrs_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_rrrs_2);
+    const real legs_size = root(legs_size_rrrs)*spread_t;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1473,41 +1481,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1518,26 +1532,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1556,21 +1579,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1588,27 +1611,27 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -1626,26 +1649,32 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -1653,473 +1682,492 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3;
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3;
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
-        const real inv_rrrs_v_1_z = 1/rrrs_v_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real inv_rrrs_r_2_r0_y = 1/rrrs_r_2_r0_y;
-        /* (rrrs-w_3) reciprocal vector 3 */
-        const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x;
-        /* (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x;
-        const real rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y;
-        /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
-        const real rrrs_J_3_xz = m->rrrs_J_3_xz[i];
-        const real rrrs_J_3_yz = m->rrrs_J_3_yz[i];
-        const real rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y;
-        /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3;
-        const real rrrs_d_Gamma_3_t = m->rrrs_d_Gamma_3_t[i];
-        const real rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x;
-        const real rrrs_J_3_zz = m->rrrs_J_3_zz[i];
-        const real rrrs_h_3_y = m->rrrs_h_3_y[i];
-        const real rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz -
-            rrrs_d_Gamma_3_t_3);
-        /* (rrrs-J_3) inertia tensor of link 3 about the connection point */
-        const real rrrs_J_3_xy = m->rrrs_J_3_xy[i];
-        const real rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3;
-        const real rrrs_J_3_xx = m->rrrs_J_3_xx[i];
-        const real rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3;
-        const real rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3;
-        const real rrrs_J_3_yy = m->rrrs_J_3_yy[i];
-        const real rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3;
-        /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real rrrs_J_2_xy = m->rrrs_J_2_xy[i];
-        const real rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3;
-        /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrrs_Jc_2_zz = m->rrrs_Jc_2_zz[i];
-        const real rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz -
-            rrrs_d_Gamma_3_t_3);
-        /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real rrrs_J_2_xx = m->rrrs_J_2_xx[i];
-        const real rrrs_J_2_yy = m->rrrs_J_2_yy[i];
-        const real rrrs__y = -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy +
-            rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3 - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 -
-            rrrs_J_3_xx*rrrs_s_3))) - rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx +
-            rrrs__x*rrrs_c_3 + rrrs__x_2*rrrs_s_3));
-        /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrrs_J_1_xx = m->rrrs_J_1_xx[i];
-        const real rrrs_h_3_x = m->rrrs_h_3_x[i];
-        const real rrrs_d_Gamma_1_z = inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) +
-            rrrs_e_1_r2_x*rrrs_h_3_y - rrrs_e_1_r2_y*rrrs_h_3_x;
-        /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real rrrs_J_2_xz = m->rrrs_J_2_xz[i];
-        const real rrrs_J_2_yz = m->rrrs_J_2_yz[i];
-        const real rrrs_d_G_xz = rrrs_d_Gamma_3_t_2*rrrs_w_3_t -
-            inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz + rrrs_J_3_yz*rrrs_c_3 -
-            rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz + rrrs_J_3_xz*rrrs_c_3 +
-            rrrs_J_3_yz*rrrs_s_3));
-        /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrrs_d_c_xx = inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t -
-            inv_rrrs_r_2_r0_y) - rrrs_d_Gamma_3_x*rrrs_w_3_t;
-        const real rrrs_d_Gamma_3_y = m->rrrs_d_Gamma_3_y[i];
-        const real rrrs_d_phi_3_t = m->rrrs_d_phi_3_t[i];
-        const real rrrs_d_c_xy = rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y -
-            rrrs_d_Gamma_3_y*rrrs_w_3_t;
-        const real rrrs_h_3_z = m->rrrs_h_3_z[i];
-        const real rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z;
-        const real rrrs_d_c_yz = rrrs_d_alpha_3_t*rrrs_h_3_z -
-            inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2;
-        /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrrs_d_c_yy = m->rrrs_d_c_yy[i];
-        const real rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy;
-        const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-        const real rrrs_Q_t_3 = rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z +
-            rrrs_d_alpha_3_t*rrrs_h_3_y - rrrs_d_alpha_3_t_2*rrrs_h_3_x;
-        const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-        const real rrrs_Q_t_5 = axis_x_rrrs_axes3_x*rrrs_d_c_xy +
-            axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz - axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2;
-        const real rrrs_Q_t_6 = axis_x_rrrs_axes3_y*rrrs_d_c_xy +
-            axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz - axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2;
-        const real rrrs_Q_t_7 = axis_x_rrrs_axes3_z*rrrs_d_c_xy +
-            axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz - axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2;
-        const real rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_x*rrrs_d_c_xz;
-        const real rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_y*rrrs_d_c_xz;
-        const real rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_z*rrrs_d_c_xz;
-        const real rrrs_Q_t_11 = axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8;
-        const real rrrs_Q_t_12 = 2*rrrs_Q_t_11 + rrrs_d_c_xx;
-        const real rrrs_Q_t_13 = axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 +
-            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 -
-            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8;
-        const real rrrs_Q_t_14 = axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 +
-            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 -
-            axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8;
-        const real rrrs_Q_t_15 = axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 -
-            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9;
-        const real rrrs_Q_t_16 = 2*rrrs_Q_t_15 + rrrs_d_c_xx;
-        const real rrrs_Q_t_17 = axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 +
-            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 -
-            axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9;
-        const real rrrs_Q_t_18 = axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 -
-            axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10;
-        const real rrrs_Q_t_19 = 2*rrrs_Q_t_18 + rrrs_d_c_xx;
-        /* (M_ta) coupling block of M */
-        const real rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z;
-        const real rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y;
-        const real rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2;
-        const real rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y;
-        const real rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7;
-        const real rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y;
-        const real rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y;
-        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z -
-            rrrs_M_ta_t_11*rrrs_q_in_base_y;
-        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y +
-            rrrs_M_ta_t_9*rrrs_q_in_base_z;
-        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z -
-            rrrs_M_ta_t_11*rrrs_q_in_base_x;
-        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x +
-            rrrs_M_ta_t_5*rrrs_q_in_base_z;
-        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y -
-            rrrs_M_ta_t_9*rrrs_q_in_base_x;
         /* (rrrs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y;
+        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
         const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x;
+        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
+        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
         const real t_dot_x = s[12*w + j];
         const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_qd_2 = inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
+        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
+        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
+        /* (rrrs-w_1) reciprocal vector 1 */
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
+        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
+        /* (rrrs-w_2) reciprocal vector 2 */
+        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
+        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+        const real rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x;
+        const real rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x;
+        const real rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x;
+        /* (rrrs-w_3) reciprocal vector 3 */
+        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+        const real rrrs_w_3_in_axes3_x =
+            -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y;
+        /* (rrrs-qd_1) rate of joint 1 */
+        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
+        /* (rrrs-qd_2) rate of joint 2 */
+        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
             axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
-        const real rrrs_qd_3 =
-            inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x);
-        const real rrrs_qd_1 = inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z);
+        /* (rrrs-qd_3) rate of joint 3 */
+        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
+            rrrs_qd_2*rrrs_r_2_in_axes3_x);
         /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1;
-        /* (rrrs-omega_2) angular velocity of link 2 */
-        const real rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t;
-        const real rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3;
+        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
+        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
+        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
+            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
+            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
+        /* (rrrs-W_2) centripetal tensor of link 2 */
+        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
         /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2;
-        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3;
+        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
+        /* (rrrs-W_3) centripetal tensor of link 3 */
+        const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
+        const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
         /* (rrrs-u_1) centripetal acceleration of the connection point */
         const real rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
         const real rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
         const real rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2;
-        const real rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2;
-        const real rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y;
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t;
-        const real rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2;
-        const real rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2;
-        const real rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2;
-        /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x;
-        const real rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y;
-        const real rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z;
-        const real rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y;
-        const real rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z;
-        const real rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 -
-            rrrs_bias_t_2*rrrs_c_3) - rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 -
-            rrrs_bias_t*rrrs_c_3);
-        const real rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3;
-        const real rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2;
-        const real rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2;
-        const real rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x -
-            rrrs_bias_t_4*rrrs_omega_2_r0_y;
-        const real rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_x = rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y
-            - rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z;
-        const real rrrs_bias_y = rrrs_bias_t_10*rrrs_omega_2_r0_x -
-            rrrs_bias_t_3*rrrs_omega_2_r0_x - rrrs_bias_t_6*rrrs_qd_2 -
-            rrrs_bias_t_8*rrrs_omega_2_r0_x;
-        const real rrrs_bias_z = rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x;
-        /* (rrrs-u_1) centripetal acceleration of the connection point */
-        const real rrrs_u_1_tip_x = axis_x_rrrs_axes3_x*rrrs_u_1_x +
+        const real rrrs_u_1_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_u_1_x +
             axis_x_rrrs_axes3_y*rrrs_u_1_y + axis_x_rrrs_axes3_z*rrrs_u_1_z;
-        const real rrrs_u_1_tip_y = axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y + axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z;
-        const real rrrs_u_1_tip_z = axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y + axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z;
+        const real rrrs_u_1_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_u_1_x +
+            axis_y_rrrs_axes3_y*rrrs_u_1_y + axis_y_rrrs_axes3_z*rrrs_u_1_z;
+        const real rrrs_u_1_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_u_1_x +
+            axis_z_rrrs_axes3_y*rrrs_u_1_y + axis_z_rrrs_axes3_z*rrrs_u_1_z;
+        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
+            rrrs_W_2_in_axes2_xz*rrrs_c_3;
+        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
+        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
+        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
+        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
+            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
+            rrrs_bias_t_2*rrrs_s_3_t);
+        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
+        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
+        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
+        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
+        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
+            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
+        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
         /* (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x;
-        const real rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y;
-        const real rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z;
-        /* (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x;
-        const real rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z;
+        const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
+        const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y;
+        const real rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
+        /* (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z;
+        /* (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x;
         /* (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2;
-        const real rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o;
+        const real rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2;
+        const real rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o;
         /* (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t;
-        const real rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y;
+        const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t;
+        const real rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz;
+        /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
+        const real rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
+        const real rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y;
+        const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
+        /* (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z;
+        const real rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z;
         /* (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real rrrs_alpha_3_o_x = rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 -
-            rrrs_alpha_2_o_y*rrrs_s_3;
-        const real rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 -
-            rrrs_zeta_3_y;
-        const real rrrs_alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y +
-            rrrs_qdd_2_o*rrrs_r_2_r0_x) - rrrs_qdd_2_o;
+        const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 +
+            rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*rrrs_s_3_t +
+            rrrs_alpha_2_o_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t;
+        const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
+            rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y - rrrs_qdd_2_o*rrrs_r_2_in_axes3_x);
         /* (rrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z;
-        const real rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y;
-        const real rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z;
-        const real rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x;
-        const real rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y;
-        const real rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x;
+        const real rrrs_B_3_o_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
+        const real rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
+        const real rrrs_B_3_o_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
+        const real rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
+        const real rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
+        const real rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
         /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_o_x = rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x -
+        const real rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x -
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_o_y = rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z;
-        const real rrrs_acc_3_o_z = rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z;
+        const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x -
+            axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
+        const real rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x -
+            axis_z_rrrs_axes3_y*gravity_y - axis_z_rrrs_axes3_z*gravity_z;
+        /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
+        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
+        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
+        const real rrrs_D_1_3 = rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x +
+            rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y;
+        /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+           about the connection point */
+        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
+        const real rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*rrrs_s_3_t;
+        const real rrrs_J_3_in_spec3_xx = m->rrrs_J_3_in_spec3_xx[i];
+        const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*rrrs_c_3;
+        const real rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*rrrs_c_3;
+        const real rrrs_J_3_in_spec3_yy = m->rrrs_J_3_in_spec3_yy[i];
+        const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*rrrs_s_3_t;
+        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
+        const real rrrs_Jc_2_in_axes2_xy = rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 -
+            rrrs_Jc_2_t_2*rrrs_s_3_t;
+        const real rrrs_J_2_in_spec2_xx = m->rrrs_J_2_in_spec2_xx[i];
+        const real rrrs_J_2_in_spec2_yy = m->rrrs_J_2_in_spec2_yy[i];
+        const real rrrs_Jc_2_in_axes1_zz = rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 +
+            rrrs_c_2*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
+            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) +
+            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 + rrrs_s_2*(rrrs_J_2_in_spec2_xx +
+            rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t));
         /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real rrrs_Sigma_3_yy = m->rrrs_Sigma_3_yy[i];
-        const real rrrs_Sigma_3_zz = m->rrrs_Sigma_3_zz[i];
-        const real rrrs_mu_3_o_x = rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy +
-            rrrs_J_3_yz*(rrrs_W_3_t_2 - rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y -
-            rrrs_B_3_o_yz*rrrs_Sigma_3_zz - rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z;
-        const real rrrs_Sigma_3_xx = m->rrrs_Sigma_3_xx[i];
-        const real rrrs_mu_3_o_y = rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy +
-            rrrs_acc_3_o_x*rrrs_h_3_z - rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx
-            - rrrs_J_3_xz*(rrrs_W_3_t - rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x;
-        const real rrrs_mu_3_o_z = rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx +
-            rrrs_J_3_xy*(rrrs_W_3_t - rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x -
-            rrrs_B_3_o_xy*rrrs_Sigma_3_yy - rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y;
-        /* (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rrrs_g_r0_x = m->rrrs_g_r0_x[i];
-        const real rrrs_g_r0_y = m->rrrs_g_r0_y[i];
-        const real rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x;
-        const real rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1;
-        const real rrrs_g_r0_z = m->rrrs_g_r0_z[i];
-        const real rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2;
-        const real rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z;
-        /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o;
-        const real rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o;
-        const real rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y;
-        const real rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x;
+        const real rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
+        const real rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
+        const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
+        const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
+        const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
+        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+        const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
+            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z;
+        const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
+        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+        const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x;
+        const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
+        /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z;
+        const real rrrs_d_Gamma_3_t = m->rrrs_d_Gamma_3_t[i];
+        const real rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x;
+        const real rrrs_J_3_in_spec3_zz = m->rrrs_J_3_in_spec3_zz[i];
+        const real rrrs_d_Gamma_3_in_axes3_x = rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz -
+            rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
         /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrrs_Sigma_2_yy = m->rrrs_Sigma_2_yy[i];
-        const real rrrs_Sigma_2_zz = m->rrrs_Sigma_2_zz[i];
-        const real rrrs_h_2_y = m->rrrs_h_2_y[i];
-        const real rrrs_h_2_z = m->rrrs_h_2_z[i];
-        const real rrrs_mu_2_o_x = rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy +
-            rrrs_J_2_yz*(rrrs_W_2_t_2 - rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z -
-            rrrs_B_2_o_zx*rrrs_J_2_xy - rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y;
-        const real rrrs_Sigma_2_xx = m->rrrs_Sigma_2_xx[i];
-        const real rrrs_h_2_x = m->rrrs_h_2_x[i];
-        const real rrrs_mu_2_o_y = rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x -
-            rrrs_B_2_o_xy*rrrs_J_2_yz - rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t -
-            rrrs_W_2_t_3) - rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z;
-        const real rrrs_mu_2_o_z = rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t -
-            rrrs_W_2_t_2) + rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy -
-            rrrs_J_2_xz*rrrs_alpha_1_o_t - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 -
-            rrrs_g_r3_y*rrrs_h_2_x;
+        const real rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
+        const real rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
+        const real rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2;
+        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
+        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
+        const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
+        const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
+        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
+        const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2;
+        const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2;
+        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
+        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
+        const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
+        const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
+        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
+        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
+        const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y;
+        const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
+        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
+        const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
+            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
+        const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t - rrrs_mu_2_o_t_2) +
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y + rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+            - rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
         /* (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3;
-        const real rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3;
-        const real rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z;
+        const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
+            rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t;
+        const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
+            rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t;
+        const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
+        /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrrs_Jc_2_in_axes2_zz = m->rrrs_Jc_2_in_axes2_zz[i];
+        const real rrrs_d_Gamma_2_in_axes3_x = rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz -
+            rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
         /* (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrrs_h_1_y = m->rrrs_h_1_y[i];
-        const real rrrs_h_1_z = m->rrrs_h_1_z[i];
-        const real rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y -
-            rrrs_g_r1_y*rrrs_h_1_z;
+        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
+        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
+        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
+        const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o -
+            rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z;
         /* (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2;
+        const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2
+            + rrrs_N_2_o_in_axes2_y*rrrs_c_2;
+        /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrrs_d_Gamma_1_in_axes3_z = rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y +
+            rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx + rrrs_Jc_2_in_axes1_zz) -
+            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x;
+        /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t));
         /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z;
+        const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
+        /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rrrs_d_c_in_axes3_xx = rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x +
+            rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
+        const real rrrs_d_Gamma_3_in_axes3_y = m->rrrs_d_Gamma_3_in_axes3_y[i];
+        const real rrrs_d_phi_3_t = m->rrrs_d_phi_3_t[i];
+        const real rrrs_d_c_in_axes3_xy = rrrs_d_phi_3_t -
+            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x;
+        const real rrrs_d_c_in_axes3_xz = -rrrs_d_G_in_axes3_xz -
+            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
+        const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
+            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrrs_c_o_x = rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) -
-            inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x - rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y
-            - rrrs_B_3_o_xz*rrrs_h_3_z;
-        const real rrrs_c_o_y = rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t -
-            rrrs_B_3_o_yx*rrrs_h_3_x - rrrs_B_3_o_yz*rrrs_h_3_z;
-        const real rrrs_c_o_z = rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) -
-            inv_rrrs_v_1_z*rrrs_N_1_o_z - rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y;
+        const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
+            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z;
+        const real rrrs_c_o_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) -
+            rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z;
+        const real rrrs_c_o_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
+            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y -
+            rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z;
+        /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrrs_d_c_in_axes3_yy = m->rrrs_d_c_in_axes3_yy[i];
+        const real rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy;
+        const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
+        const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx +
+            rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
+            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
+            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x;
+        const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
+        const real rrrs_Q_t_5 = axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy +
+            axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_2;
+        const real rrrs_Q_t_6 = axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy +
+            axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_2;
+        const real rrrs_Q_t_7 = axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy +
+            axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_2;
+        const real rrrs_Q_t_8 = axis_z_rrrs_axes3_x*rrrs_Q_t_4 -
+            axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_9 = axis_z_rrrs_axes3_y*rrrs_Q_t_4 -
+            axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_10 = axis_z_rrrs_axes3_z*rrrs_Q_t_4 -
+            axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_x*rrrs_Q_t_8;
+        const real rrrs_Q_xx = -2*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_xy = axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_6 - axis_y_rrrs_axes3_y*rrrs_Q_t_5;
+        const real rrrs_Q_xz = axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_5;
+        const real rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_y*rrrs_Q_t_9;
+        const real rrrs_Q_yy = -2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_yz = axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9 -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_6;
+        const real rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_z*rrrs_Q_t_10;
+        const real rrrs_Q_zz = -2*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx;
         /* (rrrs-U) velocity and gravity terms of the leg force */
-        const real rrrs_U_in_base_x = -axis_x_rrrs_axes3_x*rrrs_c_o_x -
-            axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y - axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z;
-        const real rrrs_U_in_base_y = -axis_x_rrrs_axes3_y*rrrs_c_o_x -
-            axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y - axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z;
-        const real rrrs_U_in_base_z = -axis_x_rrrs_axes3_z*rrrs_c_o_x -
-            axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y - axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z;
+        const real rrrs_U_x = -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
+            axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+        const real rrrs_U_y = -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
+            axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+        const real rrrs_U_z = -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
+            axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+        /* (M_ta) coupling block of M */
+        const real rrrs_M_ta_t = -rrrs_Q_xy*rrrs_q_z;
+        const real rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y;
+        const real rrrs_M_ta_t_3 = rrrs_M_ta_t + rrrs_M_ta_t_2;
+        const real rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x;
+        const real rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y;
+        const real rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z;
+        const real rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x;
+        const real rrrs_M_ta_t_8 = rrrs_M_ta_t + rrrs_M_ta_t_7;
+        const real rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y;
+        const real rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z;
+        const real rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x;
+        const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z;
+        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y + rrrs_M_ta_t_8*rrrs_q_z;
+        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z;
+        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x;
+        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x;
+        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y -
-            rrrs_U_in_base_y*rrrs_q_in_base_z;
-        const real rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z -
-            rrrs_U_in_base_z*rrrs_q_in_base_x;
-        const real rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x -
-            rrrs_U_in_base_x*rrrs_q_in_base_y;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z;
+        const real rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z;
+        const real rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x;
+        const real rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y;
         /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4;
-        const real rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5;
-        const real rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y;
-        const real rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y;
-        const real rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y;
+        const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
+        const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
+        const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
         /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3;
-        const real rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t;
-        const real rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2;
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_Q_t_12 : rrrs_Q_t_12;  /* total_rrrs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrs_Q_t_13 : rrrs_Q_t_13;  /* total_rrrs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrs_Q_t_14 : rrrs_Q_t_14;  /* total_rrrs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Q_t_16 : rrrs_Q_t_16;  /* total_rrrs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Q_t_17 : rrrs_Q_t_17;  /* total_rrrs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Q_t_19 : rrrs_Q_t_19;  /* total_rrrs_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rrrs_M_ta_t_3 : rrrs_M_ta_t_3;  /* total_rrrs_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + rrrs_M_ta_t_4 : rrrs_M_ta_t_4;  /* total_rrrs_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + rrrs_M_ta_t_5 : rrrs_M_ta_t_5;  /* total_rrrs_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + rrrs_M_ta_t_6 : rrrs_M_ta_t_6;  /* total_rrrs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + rrrs_M_ta_t_8 : rrrs_M_ta_t_8;  /* total_rrrs_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + rrrs_M_ta_t_9 : rrrs_M_ta_t_9;  /* total_rrrs_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + rrrs_M_ta_t_10 : rrrs_M_ta_t_10;  /* total_rrrs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rrrs_M_ta_t_11 : rrrs_M_ta_t_11;  /* total_rrrs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + rrrs_M_ta_t_12 : rrrs_M_ta_t_12;  /* total_rrrs_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + rrrs_M_aa_t : rrrs_M_aa_t;  /* total_rrrs_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + rrrs_M_aa_t_2 : rrrs_M_aa_t_2;  /* total_rrrs_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + rrrs_M_aa_t_3 : rrrs_M_aa_t_3;  /* total_rrrs_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + rrrs_M_aa_t_4 : rrrs_M_aa_t_4;  /* total_rrrs_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + rrrs_M_aa_t_5 : rrrs_M_aa_t_5;  /* total_rrrs_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + rrrs_M_aa_t_6 : rrrs_M_aa_t_6;  /* total_rrrs_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + rrrs_U_in_base_x : rrrs_U_in_base_x;  /* total_rrrs_x */
-        terms[22*count + k] = add ? terms[22*count + k] + rrrs_U_in_base_y : rrrs_U_in_base_y;  /* total_rrrs_y */
-        terms[23*count + k] = add ? terms[23*count + k] + rrrs_U_in_base_z : rrrs_U_in_base_z;  /* total_rrrs_z */
-        terms[24*count + k] = add ? terms[24*count + k] + rrrs_Z_a_t : rrrs_Z_a_t;  /* total_rrrs_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + rrrs_Z_a_t_2 : rrrs_Z_a_t_2;  /* total_rrrs_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + rrrs_Z_a_t_3 : rrrs_Z_a_t_3;  /* total_rrrs_z_2 */
-        o[0*count + k] = rrrs_w_1_t_3;
-        o[1*count + k] = rrrs_w_1_t_4;
-        o[2*count + k] = rrrs_w_1_t_5;
+        const real rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y;
+        const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
+        const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrrs_Q_xx : rrrs_Q_xx;  /* M_tt_rrrs_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrrs_Q_xy : rrrs_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrrs_Q_xz : rrrs_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Q_yy : rrrs_Q_yy;  /* M_tt_rrrs_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Q_yz : rrrs_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Q_zz : rrrs_Q_zz;  /* M_tt_rrrs_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + rrrs_M_ta_t_3 : rrrs_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + rrrs_M_ta_t_4 : rrrs_M_ta_t_4;  /* M_ta_rrrs_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + rrrs_M_ta_t_5 : rrrs_M_ta_t_5;  /* M_ta_rrrs_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + rrrs_M_ta_t_6 : rrrs_M_ta_t_6;  /* M_ta_rrrs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + -rrrs_M_ta_t_8 : -rrrs_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + rrrs_M_ta_t_9 : rrrs_M_ta_t_9;  /* M_ta_rrrs_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + rrrs_M_ta_t_10 : rrrs_M_ta_t_10;  /* M_ta_rrrs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + rrrs_M_ta_t_11 : rrrs_M_ta_t_11;  /* M_ta_rrrs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + rrrs_M_ta_t_12 : rrrs_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + rrrs_M_aa_t : rrrs_M_aa_t;  /* M_aa_rrrs_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + rrrs_M_aa_t_2 : rrrs_M_aa_t_2;  /* M_aa_rrrs_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + rrrs_M_aa_t_3 : rrrs_M_aa_t_3;  /* M_aa_rrrs_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + rrrs_M_aa_t_4 : rrrs_M_aa_t_4;  /* M_aa_rrrs_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + rrrs_M_aa_t_5 : rrrs_M_aa_t_5;  /* M_aa_rrrs_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + rrrs_M_aa_t_6 : rrrs_M_aa_t_6;  /* M_aa_rrrs_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + rrrs_U_x : rrrs_U_x;  /* Z_t_rrrs_x */
+        terms[22*count + k] = add ? terms[22*count + k] + rrrs_U_y : rrrs_U_y;  /* Z_t_rrrs_y */
+        terms[23*count + k] = add ? terms[23*count + k] + rrrs_U_z : rrrs_U_z;  /* Z_t_rrrs_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + rrrs_Z_a_t : rrrs_Z_a_t;  /* Z_a_rrrs_x */
+        terms[25*count + k] = add ? terms[25*count + k] + rrrs_Z_a_t_2 : rrrs_Z_a_t_2;  /* Z_a_rrrs_y */
+        terms[26*count + k] = add ? terms[26*count + k] + rrrs_Z_a_t_3 : rrrs_Z_a_t_3;  /* Z_a_rrrs_z */
+        /* (rrrs-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrrs_w_1_x;
+        o[1*count + k] = rrrs_w_1_y;
+        o[2*count + k] = rrrs_w_1_z;
+        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rrrs_H_a_1_x;
         o[4*count + k] = rrrs_H_a_1_y;
         o[5*count + k] = rrrs_H_a_1_z;
-        o[6*count + k] = -rrrs_w_2_t;
-        o[7*count + k] = -rrrs_w_2_t_2;
-        o[8*count + k] = -rrrs_w_2_t_3;
+        /* (rrrs-w_2) reciprocal vector 2 */
+        o[6*count + k] = rrrs_w_2_x;
+        o[7*count + k] = rrrs_w_2_y;
+        o[8*count + k] = rrrs_w_2_z;
+        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = rrrs_H_a_2_x;
         o[10*count + k] = rrrs_H_a_2_y;
         o[11*count + k] = rrrs_H_a_2_z;
-        o[14*count + k] = ((rrrs_w_1_t_3 + (rrrs_w_1_t_4 + rrrs_w_1_t_5)) + (rrrs_H_a_1_x +
-            (rrrs_H_a_1_y + rrrs_H_a_1_z))) + ((rrrs_w_2_t + (rrrs_w_2_t_2 + rrrs_w_2_t_3)) +
+        o[14*count + k] = ((rrrs_w_1_x + (rrrs_w_1_y + rrrs_w_1_z)) + (rrrs_H_a_1_x +
+            (rrrs_H_a_1_y + rrrs_H_a_1_z))) + ((rrrs_w_2_x + (rrrs_w_2_y + rrrs_w_2_z)) +
             (rrrs_H_a_2_x + (rrrs_H_a_2_y + rrrs_H_a_2_z)));
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
         o[13*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[12*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -2151,101 +2199,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rrrs_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rrrs_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rrrs_xx;
-        const real total_rrrs_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_rrrs_yy;
-        const real total_rrrs_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_rrrs_zz;
+        const real M_tt_xx = M_tt_rrrs_xx + m_star;
+        const real M_tt_rrrs_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_rrrs_yy + m_star;
+        const real M_tt_rrrs_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_rrrs_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_rrrs_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_rrrs_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_rrrs_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_rrrs_xz_2 - h_star_in_base_y;
-        const real total_rrrs_yx = sums[9*w + k];
-        const real M_ta_yx = total_rrrs_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_rrrs_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_rrrs_yz_2;
-        const real total_rrrs_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_rrrs_zx;
-        const real total_rrrs_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_rrrs_zy;
+        const real M_ta_rrrs_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_rrrs_xy + h_star_z;
+        const real M_ta_rrrs_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_rrrs_xz - h_star_y;
+        const real M_ta_rrrs_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_rrrs_yx - h_star_z;
+        const real M_ta_rrrs_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_rrrs_yz + h_star_x;
+        const real M_ta_rrrs_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_rrrs_zx + h_star_y;
+        const real M_ta_rrrs_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_rrrs_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_rrrs_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_rrrs_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_rrrs_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_rrrs_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_rrrs_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_rrrs_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_rrrs_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_rrrs_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_rrrs_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_rrrs_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_rrrs_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_rrrs_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_rrrs_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_rrrs_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_rrrs_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_rrrs_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_rrrs_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_rrrs_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_rrrs_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_rrrs_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_rrrs_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_rrrs_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_rrrs_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rrrs_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_rrrs_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_rrrs_x;
+        const real Z_t_rrrs_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rrrs_x;
         const real Z_p_y = s[28*w + k];
-        const real total_rrrs_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_rrrs_y;
+        const real Z_t_rrrs_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rrrs_y;
         const real Z_p_z = s[29*w + k];
-        const real total_rrrs_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_rrrs_z;
+        const real Z_t_rrrs_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_rrrs_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_rrrs_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_rrrs_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_rrrs_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_rrrs_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_rrrs_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_rrrs_z_2;
+        const real Z_a_rrrs_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_rrrs_x + Z_q_x;
+        const real Z_a_rrrs_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_rrrs_y + Z_q_y;
+        const real Z_a_rrrs_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_rrrs_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rrrs_xy = sums[1*w + k];
-        M[1*w + k] = -total_rrrs_xy;
-        M[6*w + k] = -total_rrrs_xy;
-        const real total_rrrs_xz = sums[2*w + k];
-        M[2*w + k] = -total_rrrs_xz;
-        M[12*w + k] = -total_rrrs_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_rrrs_yz = sums[4*w + k];
-        M[8*w + k] = -total_rrrs_yz;
-        M[13*w + k] = -total_rrrs_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_rrrs_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_rrrs_xx_2;
-        M[18*w + k] = total_rrrs_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_rrrs_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_rrrs_yy_2;
-        M[25*w + k] = -total_rrrs_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_rrrs_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_rrrs_zz_2;
-        M[32*w + k] = -total_rrrs_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2255,17 +2306,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_rrrs_xy + total_rrrs_xz)) + (M_tt_yy + (total_rrrs_yz +
-            M_tt_zz))) + ((total_rrrs_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_rrrs_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_rrrs_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -2336,37 +2388,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2379,15 +2437,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2405,27 +2463,27 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -2443,26 +2501,32 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -2470,226 +2534,220 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
         /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3;
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
+        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
         /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3;
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
         /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
-        const real inv_rrrs_v_1_z = 1/rrrs_v_1_z;
+        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        const real inv_rrrs_r_2_r0_y = 1/rrrs_r_2_r0_y;
+        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
         /* (rrrs-w_3) reciprocal vector 3 */
-        const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x;
+        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+        const real rrrs_w_3_in_axes3_x =
+            -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y;
         /* (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x;
-        const real rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y;
+        const real rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z;
+        const real rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z;
         /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
-        const real rrrs_J_3_xz = m->rrrs_J_3_xz[i];
-        const real rrrs_J_3_yz = m->rrrs_J_3_yz[i];
-        const real rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y;
+        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
+        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
+        const real rrrs_D_1_3 = rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x +
+            rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y;
+        /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+           about the connection point */
+        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
+        const real rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*rrrs_s_3_t;
+        const real rrrs_J_3_in_spec3_xx = m->rrrs_J_3_in_spec3_xx[i];
+        const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*rrrs_c_3;
+        const real rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*rrrs_c_3;
+        const real rrrs_J_3_in_spec3_yy = m->rrrs_J_3_in_spec3_yy[i];
+        const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*rrrs_s_3_t;
+        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
+        const real rrrs_Jc_2_in_axes2_xy = rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 -
+            rrrs_Jc_2_t_2*rrrs_s_3_t;
+        const real rrrs_J_2_in_spec2_xx = m->rrrs_J_2_in_spec2_xx[i];
+        const real rrrs_J_2_in_spec2_yy = m->rrrs_J_2_in_spec2_yy[i];
+        const real rrrs_Jc_2_in_axes1_zz = rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 +
+            rrrs_c_2*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
+            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) +
+            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 + rrrs_s_2*(rrrs_J_2_in_spec2_xx +
+            rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t));
         /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3;
+        const real rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z;
         const real rrrs_d_Gamma_3_t = m->rrrs_d_Gamma_3_t[i];
-        const real rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x;
-        const real rrrs_J_3_zz = m->rrrs_J_3_zz[i];
-        const real rrrs_h_3_y = m->rrrs_h_3_y[i];
-        const real rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz -
-            rrrs_d_Gamma_3_t_3);
-        /* (rrrs-J_3) inertia tensor of link 3 about the connection point */
-        const real rrrs_J_3_xy = m->rrrs_J_3_xy[i];
-        const real rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3;
-        const real rrrs_J_3_xx = m->rrrs_J_3_xx[i];
-        const real rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3;
-        const real rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3;
-        const real rrrs_J_3_yy = m->rrrs_J_3_yy[i];
-        const real rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3;
-        /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real rrrs_J_2_xy = m->rrrs_J_2_xy[i];
-        const real rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3;
+        const real rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x;
+        const real rrrs_J_3_in_spec3_zz = m->rrrs_J_3_in_spec3_zz[i];
+        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+        const real rrrs_d_Gamma_3_in_axes3_x = rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz -
+            rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
         /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real rrrs_Jc_2_zz = m->rrrs_Jc_2_zz[i];
-        const real rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz -
-            rrrs_d_Gamma_3_t_3);
-        /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real rrrs_J_2_xx = m->rrrs_J_2_xx[i];
-        const real rrrs_J_2_yy = m->rrrs_J_2_yy[i];
-        const real rrrs__y = -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy +
-            rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3 - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 -
-            rrrs_J_3_xx*rrrs_s_3))) - rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx +
-            rrrs__x*rrrs_c_3 + rrrs__x_2*rrrs_s_3));
+        const real rrrs_Jc_2_in_axes2_zz = m->rrrs_Jc_2_in_axes2_zz[i];
+        const real rrrs_d_Gamma_2_in_axes3_x = rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz -
+            rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
         /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real rrrs_J_1_xx = m->rrrs_J_1_xx[i];
-        const real rrrs_h_3_x = m->rrrs_h_3_x[i];
-        const real rrrs_d_Gamma_1_z = inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) +
-            rrrs_e_1_r2_x*rrrs_h_3_y - rrrs_e_1_r2_y*rrrs_h_3_x;
+        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
+        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+        const real rrrs_d_Gamma_1_in_axes3_z = rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y +
+            rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx + rrrs_Jc_2_in_axes1_zz) -
+            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x;
         /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real rrrs_J_2_xz = m->rrrs_J_2_xz[i];
-        const real rrrs_J_2_yz = m->rrrs_J_2_yz[i];
-        const real rrrs_d_G_xz = rrrs_d_Gamma_3_t_2*rrrs_w_3_t -
-            inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz + rrrs_J_3_yz*rrrs_c_3 -
-            rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz + rrrs_J_3_xz*rrrs_c_3 +
-            rrrs_J_3_yz*rrrs_s_3));
+        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
+        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
+        const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t));
         /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrrs_d_c_xx = inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t -
-            inv_rrrs_r_2_r0_y) - rrrs_d_Gamma_3_x*rrrs_w_3_t;
-        const real rrrs_d_Gamma_3_y = m->rrrs_d_Gamma_3_y[i];
+        const real rrrs_d_c_in_axes3_xx = rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x +
+            rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
+        const real rrrs_d_Gamma_3_in_axes3_y = m->rrrs_d_Gamma_3_in_axes3_y[i];
         const real rrrs_d_phi_3_t = m->rrrs_d_phi_3_t[i];
-        const real rrrs_d_c_xy = rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y -
-            rrrs_d_Gamma_3_y*rrrs_w_3_t;
-        const real rrrs_h_3_z = m->rrrs_h_3_z[i];
-        const real rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z;
-        const real rrrs_d_c_yz = rrrs_d_alpha_3_t*rrrs_h_3_z -
-            inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2;
+        const real rrrs_d_c_in_axes3_xy = rrrs_d_phi_3_t -
+            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x;
+        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+        const real rrrs_d_c_in_axes3_xz = -rrrs_d_G_in_axes3_xz -
+            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
+        const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
+            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrrs_d_c_yy = m->rrrs_d_c_yy[i];
-        const real rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy;
-        const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-        const real rrrs_Q_t_3 = rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z +
-            rrrs_d_alpha_3_t*rrrs_h_3_y - rrrs_d_alpha_3_t_2*rrrs_h_3_x;
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_Q_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_Q_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_Q_t*rrrs_base_frame_xy +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y - rrrs_Q_t_2*rrrs_base_frame_xz;
+        const real axis_y_rrrs_axes3_y = rrrs_Q_t*rrrs_base_frame_yy +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y - rrrs_Q_t_2*rrrs_base_frame_yz;
+        const real axis_y_rrrs_axes3_z = rrrs_Q_t*rrrs_base_frame_zy +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y - rrrs_Q_t_2*rrrs_base_frame_zz;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
+        const real rrrs_d_c_in_axes3_yy = m->rrrs_d_c_in_axes3_yy[i];
+        const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy;
         const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-        const real rrrs_Q_t_5 = axis_x_rrrs_axes3_x*rrrs_d_c_xy +
-            axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz - axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2;
-        const real rrrs_Q_t_6 = axis_x_rrrs_axes3_y*rrrs_d_c_xy +
-            axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz - axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2;
-        const real rrrs_Q_t_7 = axis_x_rrrs_axes3_z*rrrs_d_c_xy +
-            axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz - axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2;
-        const real rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_x*rrrs_d_c_xz;
-        const real rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_y*rrrs_d_c_xz;
-        const real rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_z*rrrs_d_c_xz;
-        const real rrrs_Q_t_11 = axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8;
-        const real rrrs_Q_t_12 = 2*rrrs_Q_t_11 + rrrs_d_c_xx;
-        const real rrrs_Q_t_13 = axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 +
-            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 -
-            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8;
-        const real rrrs_Q_t_14 = axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 +
-            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 -
-            axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8;
-        const real rrrs_Q_t_15 = axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 -
-            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9;
-        const real rrrs_Q_t_16 = 2*rrrs_Q_t_15 + rrrs_d_c_xx;
-        const real rrrs_Q_t_17 = axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 +
-            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 -
-            axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9;
-        const real rrrs_Q_t_18 = axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 -
-            axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10;
-        const real rrrs_Q_t_19 = 2*rrrs_Q_t_18 + rrrs_d_c_xx;
+        const real rrrs_Q_t_5 = rrrs_d_c_in_axes3_xx +
+            rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
+            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
+            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x;
+        const real rrrs_Q_t_6 = R(0.5)*rrrs_Q_t_5;
+        const real rrrs_Q_t_7 = axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy +
+            axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
+        const real rrrs_Q_t_8 = axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy +
+            axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
+        const real rrrs_Q_t_9 = axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy +
+            axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
+        const real rrrs_Q_t_10 = axis_z_rrrs_axes3_x*rrrs_Q_t_6 -
+            axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_11 = axis_z_rrrs_axes3_y*rrrs_Q_t_6 -
+            axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_12 = axis_z_rrrs_axes3_z*rrrs_Q_t_6 -
+            axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_z_rrrs_axes3_x*rrrs_Q_t_10;
+        const real rrrs_Q_xx = -2*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_xy = axis_z_rrrs_axes3_x*rrrs_Q_t_11 + axis_z_rrrs_axes3_y*rrrs_Q_t_10 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_8 - axis_y_rrrs_axes3_y*rrrs_Q_t_7;
+        const real rrrs_Q_xz = axis_z_rrrs_axes3_x*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_10 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_7;
+        const real rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 - axis_z_rrrs_axes3_y*rrrs_Q_t_11;
+        const real rrrs_Q_yy = -2*rrrs_Q_t_14 - rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_yz = axis_z_rrrs_axes3_y*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_11 -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_8;
+        const real rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 - axis_z_rrrs_axes3_z*rrrs_Q_t_12;
+        const real rrrs_Q_zz = -2*rrrs_Q_t_15 - rrrs_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z;
-        const real rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y;
-        const real rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2;
-        const real rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y;
-        const real rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7;
-        const real rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x;
-        const real rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y;
-        const real rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x;
+        const real rrrs_M_ta_t = -rrrs_Q_xy*rrrs_q_z;
+        const real rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y;
+        const real rrrs_M_ta_t_3 = rrrs_M_ta_t + rrrs_M_ta_t_2;
+        const real rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x;
+        const real rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y;
+        const real rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z;
+        const real rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x;
+        const real rrrs_M_ta_t_8 = rrrs_M_ta_t + rrrs_M_ta_t_7;
+        const real rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y;
+        const real rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z;
+        const real rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x;
         const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y;
-        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z -
-            rrrs_M_ta_t_11*rrrs_q_in_base_y;
-        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y +
-            rrrs_M_ta_t_9*rrrs_q_in_base_z;
-        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z -
-            rrrs_M_ta_t_11*rrrs_q_in_base_x;
-        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x +
-            rrrs_M_ta_t_5*rrrs_q_in_base_z;
-        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y -
-            rrrs_M_ta_t_9*rrrs_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_Q_t_12 : rrrs_Q_t_12;  /* total_rrrs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrs_Q_t_13 : rrrs_Q_t_13;  /* total_rrrs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrs_Q_t_14 : rrrs_Q_t_14;  /* total_rrrs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Q_t_16 : rrrs_Q_t_16;  /* total_rrrs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Q_t_17 : rrrs_Q_t_17;  /* total_rrrs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Q_t_19 : rrrs_Q_t_19;  /* total_rrrs_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rrrs_M_ta_t_3 : rrrs_M_ta_t_3;  /* total_rrrs_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + rrrs_M_ta_t_4 : rrrs_M_ta_t_4;  /* total_rrrs_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + rrrs_M_ta_t_5 : rrrs_M_ta_t_5;  /* total_rrrs_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + rrrs_M_ta_t_6 : rrrs_M_ta_t_6;  /* total_rrrs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + rrrs_M_ta_t_8 : rrrs_M_ta_t_8;  /* total_rrrs_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + rrrs_M_ta_t_9 : rrrs_M_ta_t_9;  /* total_rrrs_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + rrrs_M_ta_t_10 : rrrs_M_ta_t_10;  /* total_rrrs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rrrs_M_ta_t_11 : rrrs_M_ta_t_11;  /* total_rrrs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + rrrs_M_ta_t_12 : rrrs_M_ta_t_12;  /* total_rrrs_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + rrrs_M_aa_t : rrrs_M_aa_t;  /* total_rrrs_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + rrrs_M_aa_t_2 : rrrs_M_aa_t_2;  /* total_rrrs_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + rrrs_M_aa_t_3 : rrrs_M_aa_t_3;  /* total_rrrs_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + rrrs_M_aa_t_4 : rrrs_M_aa_t_4;  /* total_rrrs_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + rrrs_M_aa_t_5 : rrrs_M_aa_t_5;  /* total_rrrs_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + rrrs_M_aa_t_6 : rrrs_M_aa_t_6;  /* total_rrrs_zz_3 */
+        const real rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z;
+        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y + rrrs_M_ta_t_8*rrrs_q_z;
+        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z;
+        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x;
+        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x;
+        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrrs_Q_xx : rrrs_Q_xx;  /* M_tt_rrrs_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrrs_Q_xy : rrrs_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrrs_Q_xz : rrrs_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Q_yy : rrrs_Q_yy;  /* M_tt_rrrs_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Q_yz : rrrs_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Q_zz : rrrs_Q_zz;  /* M_tt_rrrs_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + rrrs_M_ta_t_3 : rrrs_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + rrrs_M_ta_t_4 : rrrs_M_ta_t_4;  /* M_ta_rrrs_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + rrrs_M_ta_t_5 : rrrs_M_ta_t_5;  /* M_ta_rrrs_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + rrrs_M_ta_t_6 : rrrs_M_ta_t_6;  /* M_ta_rrrs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + -rrrs_M_ta_t_8 : -rrrs_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + rrrs_M_ta_t_9 : rrrs_M_ta_t_9;  /* M_ta_rrrs_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + rrrs_M_ta_t_10 : rrrs_M_ta_t_10;  /* M_ta_rrrs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + rrrs_M_ta_t_11 : rrrs_M_ta_t_11;  /* M_ta_rrrs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + rrrs_M_ta_t_12 : rrrs_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + rrrs_M_aa_t : rrrs_M_aa_t;  /* M_aa_rrrs_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + rrrs_M_aa_t_2 : rrrs_M_aa_t_2;  /* M_aa_rrrs_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + rrrs_M_aa_t_3 : rrrs_M_aa_t_3;  /* M_aa_rrrs_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + rrrs_M_aa_t_4 : rrrs_M_aa_t_4;  /* M_aa_rrrs_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + rrrs_M_aa_t_5 : rrrs_M_aa_t_5;  /* M_aa_rrrs_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + rrrs_M_aa_t_6 : rrrs_M_aa_t_6;  /* M_aa_rrrs_zz */
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
         o[1*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[0*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -2707,81 +2765,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rrrs_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rrrs_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rrrs_xx;
-        const real total_rrrs_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_rrrs_yy;
-        const real total_rrrs_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_rrrs_zz;
+        const real M_tt_xx = M_tt_rrrs_xx + m_star;
+        const real M_tt_rrrs_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_rrrs_yy + m_star;
+        const real M_tt_rrrs_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_rrrs_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_rrrs_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_rrrs_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_rrrs_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_rrrs_xz_2 - h_star_in_base_y;
-        const real total_rrrs_yx = sums[9*w + k];
-        const real M_ta_yx = total_rrrs_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_rrrs_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_rrrs_yz_2;
-        const real total_rrrs_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_rrrs_zx;
-        const real total_rrrs_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_rrrs_zy;
+        const real M_ta_rrrs_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_rrrs_xy + h_star_z;
+        const real M_ta_rrrs_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_rrrs_xz - h_star_y;
+        const real M_ta_rrrs_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_rrrs_yx - h_star_z;
+        const real M_ta_rrrs_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_rrrs_yz + h_star_x;
+        const real M_ta_rrrs_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_rrrs_zx + h_star_y;
+        const real M_ta_rrrs_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_rrrs_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_rrrs_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_rrrs_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_rrrs_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_rrrs_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_rrrs_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_rrrs_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_rrrs_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_rrrs_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_rrrs_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_rrrs_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_rrrs_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_rrrs_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_rrrs_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_rrrs_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_rrrs_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_rrrs_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_rrrs_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_rrrs_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_rrrs_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_rrrs_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_rrrs_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_rrrs_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_rrrs_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rrrs_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rrrs_xy = sums[1*w + k];
-        M[1*w + k] = -total_rrrs_xy;
-        M[6*w + k] = -total_rrrs_xy;
-        const real total_rrrs_xz = sums[2*w + k];
-        M[2*w + k] = -total_rrrs_xz;
-        M[12*w + k] = -total_rrrs_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_rrrs_yz = sums[4*w + k];
-        M[8*w + k] = -total_rrrs_yz;
-        M[13*w + k] = -total_rrrs_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_rrrs_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_rrrs_xx_2;
-        M[18*w + k] = total_rrrs_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_rrrs_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_rrrs_yy_2;
-        M[25*w + k] = -total_rrrs_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_rrrs_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_rrrs_zz_2;
-        M[32*w + k] = -total_rrrs_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2791,10 +2852,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_rrrs_xy) + (total_rrrs_xz + (M_tt_yy + total_rrrs_yz)))
-            + ((M_tt_zz + total_rrrs_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) +
-            (((total_rrrs_yy_2 + M_ta_yz) + (M_ta_zx + (M_ta_zy + total_rrrs_zz_2))) + ((M_aa_xx +
-            (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2877,16 +2938,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2897,30 +2961,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2942,9 +3015,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2962,27 +3035,27 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -3000,26 +3073,32 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -3027,300 +3106,317 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3;
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3;
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
-        const real inv_rrrs_v_1_z = 1/rrrs_v_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real inv_rrrs_r_2_r0_y = 1/rrrs_r_2_r0_y;
         /* (rrrs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y;
+        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
         const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x;
+        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
+        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
         const real t_dot_x = s[12*w + j];
         const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_qd_2 = inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
+        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
+        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
+        /* (rrrs-w_1) reciprocal vector 1 */
+        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
+        /* (rrrs-w_2) reciprocal vector 2 */
+        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+        /* (rrrs-qd_1) rate of joint 1 */
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
+        /* (rrrs-qd_2) rate of joint 2 */
+        const real rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_qd_2_t - rrrs_base_frame_xz*rrrs_qd_2_t_2;
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_qd_2_t - rrrs_base_frame_yz*rrrs_qd_2_t_2;
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_qd_2_t - rrrs_base_frame_zz*rrrs_qd_2_t_2;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
+        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
             axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
-        const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real rrrs_qd_3 =
-            inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x);
-        const real rrrs_qd_1 = inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z);
+        /* (rrrs-qd_3) rate of joint 3 */
+        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
+            rrrs_qd_2*rrrs_r_2_in_axes3_x);
         /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1;
-        /* (rrrs-omega_2) angular velocity of link 2 */
-        const real rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t;
-        const real rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3;
+        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
+        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
+        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
+            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
+            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
+        /* (rrrs-W_2) centripetal tensor of link 2 */
+        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
         /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2;
-        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3;
+        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
+        /* (rrrs-W_3) centripetal tensor of link 3 */
+        const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
+        const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
         /* (rrrs-u_1) centripetal acceleration of the connection point */
         const real rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
         const real rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
         const real rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2;
-        const real rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2;
-        const real rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y;
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t;
-        const real rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2;
-        const real rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2;
-        const real rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2;
-        /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x;
-        const real rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y;
-        const real rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z;
-        const real rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y;
-        const real rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z;
-        const real rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 -
-            rrrs_bias_t_2*rrrs_c_3) - rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 -
-            rrrs_bias_t*rrrs_c_3);
-        const real rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3;
-        const real rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2;
-        const real rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2;
-        const real rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x -
-            rrrs_bias_t_4*rrrs_omega_2_r0_y;
-        const real rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_x = rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y
-            - rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z;
-        const real rrrs_bias_y = rrrs_bias_t_10*rrrs_omega_2_r0_x -
-            rrrs_bias_t_3*rrrs_omega_2_r0_x - rrrs_bias_t_6*rrrs_qd_2 -
-            rrrs_bias_t_8*rrrs_omega_2_r0_x;
-        const real rrrs_bias_z = rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x;
-        /* (rrrs-u_1) centripetal acceleration of the connection point */
-        const real rrrs_u_1_tip_x = axis_x_rrrs_axes3_x*rrrs_u_1_x +
+        const real rrrs_u_1_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_u_1_x +
             axis_x_rrrs_axes3_y*rrrs_u_1_y + axis_x_rrrs_axes3_z*rrrs_u_1_z;
-        const real rrrs_u_1_tip_y = axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y + axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z;
-        const real rrrs_u_1_tip_z = axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y + axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z;
+        const real rrrs_u_1_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_u_1_x +
+            axis_y_rrrs_axes3_y*rrrs_u_1_y + axis_y_rrrs_axes3_z*rrrs_u_1_z;
+        const real rrrs_u_1_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_u_1_x +
+            axis_z_rrrs_axes3_y*rrrs_u_1_y + axis_z_rrrs_axes3_z*rrrs_u_1_z;
+        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
+            rrrs_W_2_in_axes2_xz*rrrs_c_3;
+        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
+        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
+        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
+        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
+            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
+            rrrs_bias_t_2*rrrs_s_3_t);
+        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
+        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
+        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
+        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
+        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
+            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
+        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
         /* (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x;
-        const real rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y;
-        const real rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z;
-        /* (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x;
-        const real rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z;
+        const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
+        const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y;
+        const real rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
+        /* (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z;
+        /* (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x;
         /* (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2;
-        const real rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o;
+        const real rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2;
+        const real rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o;
         /* (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t;
-        const real rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y;
+        const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t;
+        const real rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz;
+        /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
+        const real rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
+        const real rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y;
+        const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
         /* (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real rrrs_alpha_3_o_x = rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 -
-            rrrs_alpha_2_o_y*rrrs_s_3;
-        const real rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 -
-            rrrs_zeta_3_y;
-        const real rrrs_alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y +
-            rrrs_qdd_2_o*rrrs_r_2_r0_x) - rrrs_qdd_2_o;
+        const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 +
+            rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*rrrs_s_3_t +
+            rrrs_alpha_2_o_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t;
+        const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
+            rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y - rrrs_qdd_2_o*rrrs_r_2_in_axes3_x);
         /* (rrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z;
-        const real rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y;
-        const real rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z;
-        const real rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x;
-        const real rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y;
-        const real rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x;
+        const real rrrs_B_3_o_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
+        const real rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
+        const real rrrs_B_3_o_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
+        const real rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
+        const real rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
+        const real rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
         /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_o_x = rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x -
+        const real rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x -
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_o_y = rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z;
-        const real rrrs_acc_3_o_z = rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z;
+        const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x -
+            axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
+        const real rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x -
+            axis_z_rrrs_axes3_y*gravity_y - axis_z_rrrs_axes3_z*gravity_z;
         /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real rrrs_J_3_xy = m->rrrs_J_3_xy[i];
-        const real rrrs_J_3_xz = m->rrrs_J_3_xz[i];
-        const real rrrs_J_3_yz = m->rrrs_J_3_yz[i];
-        const real rrrs_Sigma_3_yy = m->rrrs_Sigma_3_yy[i];
-        const real rrrs_Sigma_3_zz = m->rrrs_Sigma_3_zz[i];
-        const real rrrs_h_3_y = m->rrrs_h_3_y[i];
-        const real rrrs_h_3_z = m->rrrs_h_3_z[i];
-        const real rrrs_mu_3_o_x = rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy +
-            rrrs_J_3_yz*(rrrs_W_3_t_2 - rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y -
-            rrrs_B_3_o_yz*rrrs_Sigma_3_zz - rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z;
-        const real rrrs_Sigma_3_xx = m->rrrs_Sigma_3_xx[i];
-        const real rrrs_h_3_x = m->rrrs_h_3_x[i];
-        const real rrrs_mu_3_o_y = rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy +
-            rrrs_acc_3_o_x*rrrs_h_3_z - rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx
-            - rrrs_J_3_xz*(rrrs_W_3_t - rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x;
-        const real rrrs_mu_3_o_z = rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx +
-            rrrs_J_3_xy*(rrrs_W_3_t - rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x -
-            rrrs_B_3_o_xy*rrrs_Sigma_3_yy - rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y;
-        /* (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rrrs_g_r0_x = m->rrrs_g_r0_x[i];
-        const real rrrs_g_r0_y = m->rrrs_g_r0_y[i];
-        const real rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x;
-        const real rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1;
-        const real rrrs_g_r0_z = m->rrrs_g_r0_z[i];
-        const real rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2;
-        const real rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z;
-        /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o;
-        const real rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o;
-        const real rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y;
-        const real rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x;
+        const real rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
+        const real rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
+        const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
+        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
+        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
+        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
+        const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
+        const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
+        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+        const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
+            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z;
+        const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
+        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+        const real rrrs_mu_3_o_in_axes3_y = rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x;
+        const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
         /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrrs_J_2_xy = m->rrrs_J_2_xy[i];
-        const real rrrs_J_2_xz = m->rrrs_J_2_xz[i];
-        const real rrrs_J_2_yz = m->rrrs_J_2_yz[i];
-        const real rrrs_Sigma_2_yy = m->rrrs_Sigma_2_yy[i];
-        const real rrrs_Sigma_2_zz = m->rrrs_Sigma_2_zz[i];
-        const real rrrs_h_2_y = m->rrrs_h_2_y[i];
-        const real rrrs_h_2_z = m->rrrs_h_2_z[i];
-        const real rrrs_mu_2_o_x = rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy +
-            rrrs_J_2_yz*(rrrs_W_2_t_2 - rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z -
-            rrrs_B_2_o_zx*rrrs_J_2_xy - rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y;
-        const real rrrs_Sigma_2_xx = m->rrrs_Sigma_2_xx[i];
-        const real rrrs_h_2_x = m->rrrs_h_2_x[i];
-        const real rrrs_mu_2_o_y = rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x -
-            rrrs_B_2_o_xy*rrrs_J_2_yz - rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t -
-            rrrs_W_2_t_3) - rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z;
-        const real rrrs_mu_2_o_z = rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t -
-            rrrs_W_2_t_2) + rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy -
-            rrrs_J_2_xz*rrrs_alpha_1_o_t - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 -
-            rrrs_g_r3_y*rrrs_h_2_x;
+        const real rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
+        const real rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
+        const real rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2;
+        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
+        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
+        const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
+        const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
+        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
+        const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2;
+        const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2;
+        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
+        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
+        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
+        const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
+        const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
+        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
+        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
+        const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y;
+        const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
+        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
+        const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
+            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
+        const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t - rrrs_mu_2_o_t_2) +
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y + rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
+            - rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
         /* (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3;
-        const real rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3;
-        const real rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z;
+        const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
+            rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t;
+        const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
+            rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t;
+        const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
         /* (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrrs_J_1_xx = m->rrrs_J_1_xx[i];
-        const real rrrs_h_1_y = m->rrrs_h_1_y[i];
-        const real rrrs_h_1_z = m->rrrs_h_1_z[i];
-        const real rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y -
-            rrrs_g_r1_y*rrrs_h_1_z;
+        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
+        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
+        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
+        const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o -
+            rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z;
         /* (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2;
+        const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2
+            + rrrs_N_2_o_in_axes2_y*rrrs_c_2;
         /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z;
+        const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrrs_c_o_x = rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) -
-            inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x - rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y
-            - rrrs_B_3_o_xz*rrrs_h_3_z;
-        const real rrrs_c_o_y = rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t -
-            rrrs_B_3_o_yx*rrrs_h_3_x - rrrs_B_3_o_yz*rrrs_h_3_z;
-        const real rrrs_c_o_z = rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) -
-            inv_rrrs_v_1_z*rrrs_N_1_o_z - rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y;
+        const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
+            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z;
+        const real rrrs_c_o_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) -
+            rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z;
+        const real rrrs_c_o_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
+            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y -
+            rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z;
         /* (rrrs-U) velocity and gravity terms of the leg force */
-        const real rrrs_U_in_base_x = -axis_x_rrrs_axes3_x*rrrs_c_o_x -
-            axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y - axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z;
-        const real rrrs_U_in_base_y = -axis_x_rrrs_axes3_y*rrrs_c_o_x -
-            axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y - axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z;
-        const real rrrs_U_in_base_z = -axis_x_rrrs_axes3_z*rrrs_c_o_x -
-            axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y - axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z;
+        const real rrrs_U_x = -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
+            axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+        const real rrrs_U_y = -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
+            axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+        const real rrrs_U_z = -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
+            axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y -
-            rrrs_U_in_base_y*rrrs_q_in_base_z;
-        const real rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z -
-            rrrs_U_in_base_z*rrrs_q_in_base_x;
-        const real rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x -
-            rrrs_U_in_base_x*rrrs_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_U_in_base_x : rrrs_U_in_base_x;  /* total_rrrs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrs_U_in_base_y : rrrs_U_in_base_y;  /* total_rrrs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrs_U_in_base_z : rrrs_U_in_base_z;  /* total_rrrs_z */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Z_a_t : rrrs_Z_a_t;  /* total_rrrs_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Z_a_t_2 : rrrs_Z_a_t_2;  /* total_rrrs_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Z_a_t_3 : rrrs_Z_a_t_3;  /* total_rrrs_z_2 */
+        const real rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z;
+        const real rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x;
+        const real rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rrrs_U_x : rrrs_U_x;  /* Z_t_rrrs_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrrs_U_y : rrrs_U_y;  /* Z_t_rrrs_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rrrs_U_z : rrrs_U_z;  /* Z_t_rrrs_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + rrrs_Z_a_t : rrrs_Z_a_t;  /* Z_a_rrrs_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rrrs_Z_a_t_2 : rrrs_Z_a_t_2;  /* Z_a_rrrs_y */
+        terms[5*count + k] = add ? terms[5*count + k] + rrrs_Z_a_t_3 : rrrs_Z_a_t_3;  /* Z_a_rrrs_z */
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
         o[1*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[0*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -3338,27 +3434,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_rrrs_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_rrrs_x;
+        const real Z_t_rrrs_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rrrs_x;
         const real Z_p_y = s[19*w + k];
-        const real total_rrrs_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_rrrs_y;
+        const real Z_t_rrrs_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rrrs_y;
         const real Z_p_z = s[20*w + k];
-        const real total_rrrs_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_rrrs_z;
+        const real Z_t_rrrs_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_rrrs_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_rrrs_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_rrrs_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_rrrs_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_rrrs_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_rrrs_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_rrrs_z_2;
+        const real Z_a_rrrs_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_rrrs_x + Z_q_x;
+        const real Z_a_rrrs_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_rrrs_y + Z_q_y;
+        const real Z_a_rrrs_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_rrrs_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -3459,27 +3557,27 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -3497,26 +3595,32 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -3524,103 +3628,96 @@ INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
         /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t -
+            rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t;
         /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 -
-            rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
         /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
-        const real inv_rrrs_v_1_z = 1/rrrs_v_1_z;
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
+        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        const real inv_rrrs_r_2_r0_y = 1/rrrs_r_2_r0_y;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z;
+        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
+        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+        const real rrrs_w_2_x = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y);
+        const real rrrs_w_2_y = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z);
+        const real rrrs_w_2_z = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x);
         /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4;
-        const real rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5;
-        const real rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t =
-            inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y);
-        const real rrrs_w_2_t_2 =
-            inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z);
-        const real rrrs_w_2_t_3 =
-            inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x);
+        const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
+        const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
+        const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
         /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3;
-        const real rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t;
-        const real rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2;
-        o[0*count + k] = rrrs_w_1_t_3;
-        o[1*count + k] = rrrs_w_1_t_4;
-        o[2*count + k] = rrrs_w_1_t_5;
+        const real rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y;
+        const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
+        const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
+        /* (rrrs-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrrs_w_1_x;
+        o[1*count + k] = rrrs_w_1_y;
+        o[2*count + k] = rrrs_w_1_z;
+        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rrrs_H_a_1_x;
         o[4*count + k] = rrrs_H_a_1_y;
         o[5*count + k] = rrrs_H_a_1_z;
-        o[6*count + k] = -rrrs_w_2_t;
-        o[7*count + k] = -rrrs_w_2_t_2;
-        o[8*count + k] = -rrrs_w_2_t_3;
+        /* (rrrs-w_2) reciprocal vector 2 */
+        o[6*count + k] = rrrs_w_2_x;
+        o[7*count + k] = rrrs_w_2_y;
+        o[8*count + k] = rrrs_w_2_z;
+        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = rrrs_H_a_2_x;
         o[10*count + k] = rrrs_H_a_2_y;
         o[11*count + k] = rrrs_H_a_2_z;
-        o[14*count + k] = ((rrrs_w_1_t_3 + (rrrs_w_1_t_4 + rrrs_w_1_t_5)) + (rrrs_H_a_1_x +
-            (rrrs_H_a_1_y + rrrs_H_a_1_z))) + ((rrrs_w_2_t + (rrrs_w_2_t_2 + rrrs_w_2_t_3)) +
+        o[14*count + k] = ((rrrs_w_1_x + (rrrs_w_1_y + rrrs_w_1_z)) + (rrrs_H_a_1_x +
+            (rrrs_H_a_1_y + rrrs_H_a_1_z))) + ((rrrs_w_2_x + (rrrs_w_2_y + rrrs_w_2_z)) +
             (rrrs_H_a_2_x + (rrrs_H_a_2_y + rrrs_H_a_2_z)));
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
         o[13*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[12*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -3732,33 +3829,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3766,31 +3850,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3818,9 +3928,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3838,27 +3948,27 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -3876,26 +3986,32 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -3903,320 +4019,335 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3;
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3;
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
-        const real inv_rrrs_v_1_z = 1/rrrs_v_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real inv_rrrs_r_2_r0_y = 1/rrrs_r_2_r0_y;
         /* (rrrs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y;
+        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
         const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x;
+        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
+        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
         const real t_dot_x = s[12*w + j];
         const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_qd_2 = inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
-        const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real rrrs_qd_3 =
-            inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x);
-        const real rrrs_qd_1 = inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z);
-        /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1;
-        /* (rrrs-omega_2) angular velocity of link 2 */
-        const real rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t;
-        const real rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3;
-        /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2;
-        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2;
-        const real rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2;
-        const real rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y;
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t;
-        const real rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2;
-        const real rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2;
-        const real rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2;
-        /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x;
-        const real rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y;
-        const real rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z;
-        const real rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y;
-        const real rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z;
-        const real rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 -
-            rrrs_bias_t_2*rrrs_c_3) - rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 -
-            rrrs_bias_t*rrrs_c_3);
-        const real rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3;
-        const real rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2;
-        const real rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2;
-        const real rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x -
-            rrrs_bias_t_4*rrrs_omega_2_r0_y;
-        const real rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_x = rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y
-            - rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z;
-        const real rrrs_bias_y = rrrs_bias_t_10*rrrs_omega_2_r0_x -
-            rrrs_bias_t_3*rrrs_omega_2_r0_x - rrrs_bias_t_6*rrrs_qd_2 -
-            rrrs_bias_t_8*rrrs_omega_2_r0_x;
-        const real rrrs_bias_z = rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x;
-        /* (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rrrs_g_r0_x = m->rrrs_g_r0_x[i];
-        const real rrrs_g_r0_y = m->rrrs_g_r0_y[i];
-        const real rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x;
-        const real rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1;
-        const real rrrs_g_r0_z = m->rrrs_g_r0_z[i];
-        const real rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2;
-        const real rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z;
+        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
+        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
         /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4;
-        const real rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5;
-        const real rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3;
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
+        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y;
-        const real rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y;
-        const real rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3;
-        const real rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t;
-        const real rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2;
+        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
+        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+        const real rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x;
+        const real rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x;
+        const real rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x;
+        /* (rrrs-qd_1) rate of joint 1 */
+        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
+        /* (rrrs-qd_2) rate of joint 2 */
+        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
+        /* (rrrs-qd_3) rate of joint 3 */
+        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
+            rrrs_qd_2*rrrs_r_2_in_axes3_x);
+        /* (rrrs-omega_1) angular velocity of link 1 */
+        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
+        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
+        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
+            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
+            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
+        /* (rrrs-W_2) centripetal tensor of link 2 */
+        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
+        /* (rrrs-omega_3) angular velocity of link 3 */
+        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
+        /* (rrrs-W_3) centripetal tensor of link 3 */
+        const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
+        const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
         /* (rrrs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y;
+        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z;
+        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x;
+        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x;
         /* (rrrs-S_ddot) acceleration of the connection point */
         const real rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
         const real rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
         const real rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
-        const real rrrs_S_ddot_tip_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
+        const real rrrs_S_ddot_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
             axis_x_rrrs_axes3_y*rrrs_S_ddot_y + axis_x_rrrs_axes3_z*rrrs_S_ddot_z;
-        const real rrrs_S_ddot_tip_y = axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z;
-        const real rrrs_S_ddot_tip_z = axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z;
+        const real rrrs_S_ddot_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_S_ddot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_z*rrrs_S_ddot_z;
+        const real rrrs_S_ddot_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_S_ddot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_z*rrrs_S_ddot_z;
+        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
+            rrrs_W_2_in_axes2_xz*rrrs_c_3;
+        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
+        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
+        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
+        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
+            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
+            rrrs_bias_t_2*rrrs_s_3_t);
+        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
+        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
+        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
+        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
+        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
+            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
+        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
         /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x;
-        const real rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y;
-        const real rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z;
+        const real rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x;
+        const real rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y;
+        const real rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z;
         /* (rrrs-qdd_1) acceleration of joint 1 */
-        const real rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x;
-        const real rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z;
+        const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z;
+        /* (rrrs-qdd_2) acceleration of joint 2 */
+        const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x;
+        /* (rrrs-alpha_1) angular acceleration of link 1 */
+        const real rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2;
+        const real rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1;
+        /* (rrrs-alpha_2) angular acceleration of link 2 */
+        const real rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t;
+        const real rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz;
+        /* (rrrs-B_2) acceleration tensor of link 2 */
+        const real rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2;
+        const real rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2;
+        const real rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y;
+        const real rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x;
+        /* (rrrs-alpha_3) angular acceleration of link 3 */
+        const real rrrs_alpha_3_in_axes3_x = rrrs_alpha_2_in_axes2_x*rrrs_c_3 +
+            rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*rrrs_s_3_t +
+            rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t;
+        const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y
+            - rrrs_qdd_2*rrrs_r_2_in_axes3_x);
+        /* (rrrs-B_3) acceleration tensor of link 3 */
+        const real rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z;
+        const real rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y;
+        const real rrrs_B_3_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z;
+        const real rrrs_B_3_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x;
+        const real rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y;
+        const real rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x;
         /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_x = rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x -
-            axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_y = rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z;
-        const real rrrs_acc_3_z = rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z;
-        /* (rrrs-alpha_1) angular acceleration of link 1 */
-        const real rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2;
-        const real rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1;
-        /* (rrrs-alpha_2) angular acceleration of link 2 */
-        const real rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t;
-        const real rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y;
-        /* (rrrs-alpha_3) angular acceleration of link 3 */
-        const real rrrs_alpha_3_x = rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 -
-            rrrs_alpha_2_y*rrrs_s_3;
-        const real rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 -
-            rrrs_zeta_3_y;
-        const real rrrs_alpha_3_z = inv_rrrs_platform_joint_offset_x*(rrrs_rel_y +
-            rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2;
-        /* (rrrs-B_3) acceleration tensor of link 3 */
-        const real rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z;
-        const real rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y;
-        const real rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z;
-        const real rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x;
-        const real rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y;
-        const real rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x;
+        const real rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x
+            - axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
+        const real rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x
+            - axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
+        const real rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x
+            - axis_z_rrrs_axes3_y*gravity_y - axis_z_rrrs_axes3_z*gravity_z;
         /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rrrs_J_3_xy = m->rrrs_J_3_xy[i];
-        const real rrrs_J_3_xz = m->rrrs_J_3_xz[i];
-        const real rrrs_J_3_yz = m->rrrs_J_3_yz[i];
-        const real rrrs_Sigma_3_yy = m->rrrs_Sigma_3_yy[i];
-        const real rrrs_Sigma_3_zz = m->rrrs_Sigma_3_zz[i];
-        const real rrrs_h_3_y = m->rrrs_h_3_y[i];
-        const real rrrs_h_3_z = m->rrrs_h_3_z[i];
-        const real rrrs_mu_3_x = rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy +
-            rrrs_J_3_yz*(rrrs_W_3_t_2 - rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y -
-            rrrs_B_3_yz*rrrs_Sigma_3_zz - rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z;
-        const real rrrs_Sigma_3_xx = m->rrrs_Sigma_3_xx[i];
-        const real rrrs_h_3_x = m->rrrs_h_3_x[i];
-        const real rrrs_mu_3_y = rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy +
-            rrrs_acc_3_x*rrrs_h_3_z - rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx -
-            rrrs_J_3_xz*(rrrs_W_3_t - rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x;
-        const real rrrs_mu_3_z = rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx +
-            rrrs_J_3_xy*(rrrs_W_3_t - rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x -
-            rrrs_B_3_xy*rrrs_Sigma_3_yy - rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y;
-        /* (rrrs-B_2) acceleration tensor of link 2 */
-        const real rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2;
-        const real rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2;
-        const real rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y;
-        const real rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x;
+        const real rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
+        const real rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
+        const real rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
+        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
+        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
+        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
+        const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
+        const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
+        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+        const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 -
+            rrrs_mu_3_t_3) + rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z;
+        const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
+        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+        const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+            rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z
+            - rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
+            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x;
+        const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t -
+            rrrs_mu_3_t_2) + rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y;
         /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrrs_J_2_xy = m->rrrs_J_2_xy[i];
-        const real rrrs_J_2_xz = m->rrrs_J_2_xz[i];
-        const real rrrs_J_2_yz = m->rrrs_J_2_yz[i];
-        const real rrrs_Sigma_2_yy = m->rrrs_Sigma_2_yy[i];
-        const real rrrs_Sigma_2_zz = m->rrrs_Sigma_2_zz[i];
-        const real rrrs_h_2_y = m->rrrs_h_2_y[i];
-        const real rrrs_h_2_z = m->rrrs_h_2_z[i];
-        const real rrrs_mu_2_x = rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy +
-            rrrs_J_2_yz*(rrrs_W_2_t_2 - rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z -
-            rrrs_B_2_zx*rrrs_J_2_xy - rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y;
-        const real rrrs_Sigma_2_xx = m->rrrs_Sigma_2_xx[i];
-        const real rrrs_h_2_x = m->rrrs_h_2_x[i];
-        const real rrrs_mu_2_y = rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x -
-            rrrs_B_2_xy*rrrs_J_2_yz - rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t -
-            rrrs_W_2_t_3) - rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z;
-        const real rrrs_mu_2_z = rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t -
-            rrrs_W_2_t_2) + rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy -
-            rrrs_J_2_xz*rrrs_alpha_1_t - rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x;
+        const real rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
+        const real rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
+        const real rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2;
+        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
+        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
+        const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
+        const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
+        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
+        const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2;
+        const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2;
+        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
+        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
+        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
+        const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
+        const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
+        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
+        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
+        const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 -
+            rrrs_mu_2_t_5) + rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z -
+            rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y;
+        const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
+        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
+        const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
+        const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y + rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+            rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t -
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
         /* (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3;
-        const real rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3;
-        const real rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z;
+        const real rrrs_N_2_in_axes2_x = rrrs_mu_2_in_axes2_x + rrrs_c_3*rrrs_mu_3_in_axes3_x +
+            rrrs_mu_3_in_axes3_y*rrrs_s_3_t;
+        const real rrrs_N_2_in_axes2_y = rrrs_mu_2_in_axes2_y + rrrs_c_3*rrrs_mu_3_in_axes3_y -
+            rrrs_mu_3_in_axes3_x*rrrs_s_3_t;
+        const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
         /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrrs_J_1_xx = m->rrrs_J_1_xx[i];
-        const real rrrs_h_1_y = m->rrrs_h_1_y[i];
-        const real rrrs_h_1_z = m->rrrs_h_1_z[i];
-        const real rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y -
-            rrrs_g_r1_y*rrrs_h_1_z;
+        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
+        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
+        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
+        const real rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 -
+            rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z;
         /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2;
+        const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 +
+            rrrs_N_2_in_axes2_y*rrrs_c_2;
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z;
+        const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrrs_c_x = rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) -
-            inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x - rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y -
-            rrrs_B_3_xz*rrrs_h_3_z;
-        const real rrrs_c_y = rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t -
-            rrrs_B_3_yx*rrrs_h_3_x - rrrs_B_3_yz*rrrs_h_3_z;
-        const real rrrs_c_z = rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
-            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y;
-        const real rrrs_c_in_base_x = axis_x_rrrs_axes3_x*rrrs_c_x +
-            axis_y_rrrs_axes3_in_base_x*rrrs_c_y + axis_z_rrrs_axes3_in_base_x*rrrs_c_z;
-        const real rrrs_c_in_base_y = axis_x_rrrs_axes3_y*rrrs_c_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_c_y + axis_z_rrrs_axes3_in_base_y*rrrs_c_z;
-        const real rrrs_c_in_base_z = axis_x_rrrs_axes3_z*rrrs_c_x +
-            axis_y_rrrs_axes3_in_base_z*rrrs_c_y + axis_z_rrrs_axes3_in_base_z*rrrs_c_z;
+        const real rrrs_c_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
+            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z;
+        const real rrrs_c_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
+            rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
+        const real rrrs_c_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
+            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
+            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z;
+        const real rrrs_c_x = axis_x_rrrs_axes3_x*rrrs_c_in_axes3_x +
+            axis_y_rrrs_axes3_x*rrrs_c_in_axes3_y + axis_z_rrrs_axes3_x*rrrs_c_in_axes3_z;
+        const real rrrs_c_y = axis_x_rrrs_axes3_y*rrrs_c_in_axes3_x +
+            axis_y_rrrs_axes3_y*rrrs_c_in_axes3_y + axis_z_rrrs_axes3_y*rrrs_c_in_axes3_z;
+        const real rrrs_c_z = axis_x_rrrs_axes3_z*rrrs_c_in_axes3_x +
+            axis_y_rrrs_axes3_z*rrrs_c_in_axes3_y + axis_z_rrrs_axes3_z*rrrs_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrrs_R_a_t = rrrs_c_in_base_z*rrrs_q_in_base_y -
-            rrrs_c_in_base_y*rrrs_q_in_base_z;
-        const real rrrs_R_a_t_2 = rrrs_c_in_base_x*rrrs_q_in_base_z -
-            rrrs_c_in_base_z*rrrs_q_in_base_x;
-        const real rrrs_R_a_t_3 = rrrs_c_in_base_y*rrrs_q_in_base_x -
-            rrrs_c_in_base_x*rrrs_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_c_in_base_x : rrrs_c_in_base_x;  /* total_rrrs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrrs_c_in_base_y : rrrs_c_in_base_y;  /* total_rrrs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrrs_c_in_base_z : rrrs_c_in_base_z;  /* total_rrrs_z */
-        terms[3*count + k] = add ? terms[3*count + k] + rrrs_R_a_t : rrrs_R_a_t;  /* total_rrrs_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + rrrs_R_a_t_2 : rrrs_R_a_t_2;  /* total_rrrs_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + rrrs_R_a_t_3 : rrrs_R_a_t_3;  /* total_rrrs_z_2 */
-        o[0*count + k] = rrrs_w_1_t_3;
-        o[1*count + k] = rrrs_w_1_t_4;
-        o[2*count + k] = rrrs_w_1_t_5;
+        const real rrrs_R_a_t = rrrs_c_y*rrrs_q_z - rrrs_c_z*rrrs_q_y;
+        const real rrrs_R_a_t_2 = rrrs_c_z*rrrs_q_x - rrrs_c_x*rrrs_q_z;
+        const real rrrs_R_a_t_3 = rrrs_c_x*rrrs_q_y - rrrs_c_y*rrrs_q_x;
+        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
+        const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
+        const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
+        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+        const real rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y;
+        const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
+        const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rrrs_c_x : rrrs_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rrrs_c_y : rrrs_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + rrrs_c_z : rrrs_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + rrrs_R_a_t : rrrs_R_a_t;  /* R_a_rrrs_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rrrs_R_a_t_2 : rrrs_R_a_t_2;  /* R_a_rrrs_y */
+        terms[5*count + k] = add ? terms[5*count + k] + rrrs_R_a_t_3 : rrrs_R_a_t_3;  /* R_a_rrrs_z */
+        /* (rrrs-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrrs_w_1_x;
+        o[1*count + k] = rrrs_w_1_y;
+        o[2*count + k] = rrrs_w_1_z;
+        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rrrs_H_a_1_x;
         o[4*count + k] = rrrs_H_a_1_y;
         o[5*count + k] = rrrs_H_a_1_z;
-        o[6*count + k] = -rrrs_w_2_t;
-        o[7*count + k] = -rrrs_w_2_t_2;
-        o[8*count + k] = -rrrs_w_2_t_3;
+        /* (rrrs-w_2) reciprocal vector 2 */
+        o[6*count + k] = rrrs_w_2_x;
+        o[7*count + k] = rrrs_w_2_y;
+        o[8*count + k] = rrrs_w_2_z;
+        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = rrrs_H_a_2_x;
         o[10*count + k] = rrrs_H_a_2_y;
         o[11*count + k] = rrrs_H_a_2_z;
@@ -4225,8 +4356,8 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_size = m->rrrs_size[i];
         o[13*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[12*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -4256,28 +4387,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_rrrs_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_rrrs_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_rrrs_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_rrrs_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_rrrs_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_rrrs_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_rrrs_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_rrrs_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_rrrs_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_rrrs_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_rrrs_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_rrrs_z_2;
+        const real R_a_rrrs_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_rrrs_x + mu_p_x;
+        const real R_a_rrrs_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_rrrs_y + mu_p_y;
+        const real R_a_rrrs_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_rrrs_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -4414,26 +4547,31 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t leg
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-q_1) displacement of joint 1 */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_q_1 = angle(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1,
+            inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1);
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -4441,28 +4579,25 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t leg
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-q_2) displacement of joint 2 */
+        const real rrrs_q_2_t = -1/rrrs_rho2_2;
+        const real rrrs_q_2 = angle(-rrrs_q_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2),
+            rrrs_q_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2));
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        /* (rrrs-q_1) displacement of joint 1 */
-        const real rrrs_q_1 = angle(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1,
-            inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1);
-        /* (rrrs-q_2) displacement of joint 2 */
-        const real rrrs_q_2 = angle(inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2),
-            -inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2));
         /* (rrrs-q_3) displacement of joint 3 */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
         const real rrrs_q_3 =
             angle(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2,
-            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x);
+            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x);
+        /* (rrrs-q_1) displacement of joint 1 */
         o[0*count + k] = rrrs_q_1;
+        /* (rrrs-q_2) displacement of joint 2 */
         o[1*count + k] = rrrs_q_2;
+        /* (rrrs-q_3) displacement of joint 3 */
         o[2*count + k] = rrrs_q_3;
         o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
@@ -4592,27 +4727,27 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t leg, size_
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -4630,26 +4765,32 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t leg, size_
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -4657,84 +4798,80 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t leg, size_
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3;
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
         /* (rrrs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y;
+        const real rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_z - omega_z*rrrs_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z;
+        const real rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_x - omega_x*rrrs_q_z;
         const real t_dot_z = s[14*w + j];
-        const real rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x;
+        const real rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_y - omega_y*rrrs_q_x;
+        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
+        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
+        /* (rrrs-qd_1) rate of joint 1 */
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_qd_1 = (axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)/rrrs_v_1_in_axes3_z;
+        /* (rrrs-qd_2) rate of joint 2 */
+        const real rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_qd_2_t - rrrs_base_frame_xz*rrrs_qd_2_t_2;
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_qd_2_t - rrrs_base_frame_yz*rrrs_qd_2_t_2;
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_qd_2_t - rrrs_base_frame_zz*rrrs_qd_2_t_2;
+        const real rrrs_qd_2 = -(rrrs_S_dot_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y) +
+            rrrs_S_dot_y*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z) +
+            rrrs_S_dot_z*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x))/rrrs_r_2_in_axes3_y;
         /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_qd_2 =
-            (rrrs_S_dot_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y) +
-            rrrs_S_dot_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z) +
-            rrrs_S_dot_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/rrrs_r_2_r0_y;
-        const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real rrrs_qd_3 =
-            inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*(rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3));
-        const real rrrs_qd_1 = (axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)/rrrs_v_1_z;
+        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
+            rrrs_qd_2*(rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t));
+        /* (rrrs-qd_1) rate of joint 1 */
         o[0*count + k] = rrrs_qd_1;
-        o[1*count + k] = -rrrs_qd_2;
+        /* (rrrs-qd_2) rate of joint 2 */
+        o[1*count + k] = rrrs_qd_2;
+        /* (rrrs-qd_3) rate of joint 3 */
         o[2*count + k] = rrrs_qd_3;
         o[5*count + k] = rrrs_qd_1 + (rrrs_qd_2 + rrrs_qd_3);
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
@@ -4742,8 +4879,8 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t leg, size_
         const real rrrs_size = m->rrrs_size[i];
         o[4*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[3*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -4888,27 +5025,27 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t le
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -4926,26 +5063,32 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t le
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -4953,157 +5096,163 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t le
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3;
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3;
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
-        const real inv_rrrs_v_1_z = 1/rrrs_v_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real inv_rrrs_r_2_r0_y = 1/rrrs_r_2_r0_y;
         /* (rrrs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y;
+        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
         const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x;
+        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
+        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
         const real t_dot_x = s[12*w + j];
         const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_qd_2 = inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
+        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
+        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
+        /* (rrrs-w_1) reciprocal vector 1 */
+        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
+        /* (rrrs-w_2) reciprocal vector 2 */
+        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+        /* (rrrs-qd_1) rate of joint 1 */
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
+        /* (rrrs-qd_2) rate of joint 2 */
+        const real rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_qd_2_t - rrrs_base_frame_xz*rrrs_qd_2_t_2;
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_qd_2_t - rrrs_base_frame_yz*rrrs_qd_2_t_2;
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_qd_2_t - rrrs_base_frame_zz*rrrs_qd_2_t_2;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
+        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
             axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
-        const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real rrrs_qd_3 =
-            inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x);
-        const real rrrs_qd_1 = inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z);
+        /* (rrrs-qd_3) rate of joint 3 */
+        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
+            rrrs_qd_2*rrrs_r_2_in_axes3_x);
         /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1;
-        /* (rrrs-omega_2) angular velocity of link 2 */
-        const real rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t;
-        const real rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3;
+        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
+        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
+        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
+            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
+            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
+        /* (rrrs-W_2) centripetal tensor of link 2 */
+        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
         /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2;
-        const real rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2;
-        const real rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_omega_2_r0_x*rrrs_qd_3;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 -
-            rrrs_bias_t_2*rrrs_c_3) - rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 -
-            rrrs_bias_t*rrrs_c_3);
-        const real rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3;
-        const real rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2;
-        const real rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2;
-        const real rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x -
-            rrrs_bias_t_4*rrrs_omega_2_r0_y;
-        const real rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_x = rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y
-            - rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z;
-        const real rrrs_bias_y = rrrs_bias_t_10*rrrs_omega_2_r0_x -
-            rrrs_bias_t_3*rrrs_omega_2_r0_x - rrrs_bias_t_6*rrrs_qd_2 -
-            rrrs_bias_t_8*rrrs_omega_2_r0_x;
-        const real rrrs_bias_z = rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x;
+        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
         /* (rrrs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y;
+        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z;
+        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x;
+        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x;
         /* (rrrs-S_ddot) acceleration of the connection point */
         const real rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
         const real rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
         const real rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
+        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
+            rrrs_W_2_in_axes2_xz*rrrs_c_3;
+        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y -
+            rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
+        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
+        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
+            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
+            rrrs_bias_t_2*rrrs_s_3_t);
+        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
+        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
+        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
+        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
+        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
+            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
+        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
         /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrs_rel_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_ddot_y + axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_x;
-        const real rrrs_rel_y = axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
-            - rrrs_bias_y;
-        const real rrrs_rel_z = axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
-            - rrrs_bias_z;
+        const real rrrs_rel_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
+            axis_x_rrrs_axes3_y*rrrs_S_ddot_y + axis_x_rrrs_axes3_z*rrrs_S_ddot_z -
+            rrrs_bias_in_axes3_x;
+        const real rrrs_rel_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_S_ddot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_z*rrrs_S_ddot_z -
+            rrrs_bias_in_axes3_y;
+        const real rrrs_rel_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_S_ddot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_z*rrrs_S_ddot_z -
+            rrrs_bias_in_axes3_z;
         /* (rrrs-qdd_1) acceleration of joint 1 */
-        const real rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x;
-        const real rrrs_qdd_3 = inv_rrrs_platform_joint_offset_x*(rrrs_rel_y +
-            rrrs_qdd_2*rrrs_r_2_r0_x);
-        const real rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z;
+        const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z;
+        /* (rrrs-qdd_2) acceleration of joint 2 */
+        const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x;
+        /* (rrrs-qdd_3) acceleration of joint 3 */
+        const real rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y -
+            rrrs_qdd_2*rrrs_r_2_in_axes3_x);
+        /* (rrrs-qdd_1) acceleration of joint 1 */
         o[0*count + k] = rrrs_qdd_1;
-        o[1*count + k] = -rrrs_qdd_2;
+        /* (rrrs-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = rrrs_qdd_2;
+        /* (rrrs-qdd_3) acceleration of joint 3 */
         o[2*count + k] = rrrs_qdd_3;
         o[5*count + k] = rrrs_qdd_1 + (rrrs_qdd_2 + rrrs_qdd_3);
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
@@ -5111,8 +5260,8 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t le
         const real rrrs_size = m->rrrs_size[i];
         o[4*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[3*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -5258,27 +5407,27 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -5296,26 +5445,32 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -5323,311 +5478,332 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3;
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3;
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
-        const real inv_rrrs_v_1_z = 1/rrrs_v_1_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real inv_rrrs_r_2_r0_y = 1/rrrs_r_2_r0_y;
         /* (rrrs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y;
+        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
         const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x;
+        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
+        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
         const real t_dot_x = s[12*w + j];
         const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_qd_2 = inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
-        const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real rrrs_qd_3 =
-            inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x);
-        const real rrrs_qd_1 = inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z);
-        /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1;
-        /* (rrrs-omega_2) angular velocity of link 2 */
-        const real rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t;
-        const real rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3;
-        /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2;
-        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2;
-        const real rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2;
-        const real rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y;
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t;
-        const real rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2;
-        const real rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2;
-        const real rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2;
-        /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x;
-        const real rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y;
-        const real rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z;
-        const real rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y;
-        const real rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z;
-        const real rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 -
-            rrrs_bias_t_2*rrrs_c_3) - rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 -
-            rrrs_bias_t*rrrs_c_3);
-        const real rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3;
-        const real rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2;
-        const real rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2;
-        const real rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x -
-            rrrs_bias_t_4*rrrs_omega_2_r0_y;
-        const real rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_x = rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y
-            - rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z;
-        const real rrrs_bias_y = rrrs_bias_t_10*rrrs_omega_2_r0_x -
-            rrrs_bias_t_3*rrrs_omega_2_r0_x - rrrs_bias_t_6*rrrs_qd_2 -
-            rrrs_bias_t_8*rrrs_omega_2_r0_x;
-        const real rrrs_bias_z = rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x;
-        /* (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rrrs_g_r0_x = m->rrrs_g_r0_x[i];
-        const real rrrs_g_r0_y = m->rrrs_g_r0_y[i];
-        const real rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x;
-        const real rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1;
-        const real rrrs_g_r0_z = m->rrrs_g_r0_z[i];
-        const real rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2;
-        const real rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z;
+        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
+        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
         /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z;
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
+        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y;
-        const real rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y;
-        const real rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y;
+        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
+        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+        const real rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x;
+        const real rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x;
+        const real rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x;
+        /* (rrrs-qd_1) rate of joint 1 */
+        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
+        /* (rrrs-qd_2) rate of joint 2 */
+        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
+        /* (rrrs-qd_3) rate of joint 3 */
+        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
+            rrrs_qd_2*rrrs_r_2_in_axes3_x);
+        /* (rrrs-omega_1) angular velocity of link 1 */
+        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
+        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
+        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
+            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
+            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
+        /* (rrrs-W_2) centripetal tensor of link 2 */
+        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
+        /* (rrrs-omega_3) angular velocity of link 3 */
+        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
+        /* (rrrs-W_3) centripetal tensor of link 3 */
+        const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
+        const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
         /* (rrrs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y;
+        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z;
+        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x;
+        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x;
         /* (rrrs-S_ddot) acceleration of the connection point */
         const real rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
         const real rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
         const real rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
-        const real rrrs_S_ddot_tip_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
+        const real rrrs_S_ddot_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
             axis_x_rrrs_axes3_y*rrrs_S_ddot_y + axis_x_rrrs_axes3_z*rrrs_S_ddot_z;
-        const real rrrs_S_ddot_tip_y = axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z;
-        const real rrrs_S_ddot_tip_z = axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z;
+        const real rrrs_S_ddot_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_S_ddot_x +
+            axis_y_rrrs_axes3_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_z*rrrs_S_ddot_z;
+        const real rrrs_S_ddot_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_S_ddot_x +
+            axis_z_rrrs_axes3_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_z*rrrs_S_ddot_z;
+        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
+            rrrs_W_2_in_axes2_xz*rrrs_c_3;
+        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
+        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
+        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
+        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
+            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
+            rrrs_bias_t_2*rrrs_s_3_t);
+        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
+        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
+        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
+        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
+        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
+        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
+            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
+        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
         /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x;
-        const real rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y;
-        const real rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z;
+        const real rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x;
+        const real rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y;
+        const real rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z;
         /* (rrrs-qdd_1) acceleration of joint 1 */
-        const real rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x;
-        const real rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z;
+        const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z;
+        /* (rrrs-qdd_2) acceleration of joint 2 */
+        const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x;
+        /* (rrrs-alpha_1) angular acceleration of link 1 */
+        const real rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2;
+        const real rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1;
+        /* (rrrs-alpha_2) angular acceleration of link 2 */
+        const real rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t;
+        const real rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz;
+        /* (rrrs-B_2) acceleration tensor of link 2 */
+        const real rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2;
+        const real rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2;
+        const real rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y;
+        const real rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x;
+        /* (rrrs-alpha_3) angular acceleration of link 3 */
+        const real rrrs_alpha_3_in_axes3_x = rrrs_alpha_2_in_axes2_x*rrrs_c_3 +
+            rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_in_axes2_y*rrrs_s_3_t;
+        const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*rrrs_s_3_t +
+            rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t;
+        const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y
+            - rrrs_qdd_2*rrrs_r_2_in_axes3_x);
+        /* (rrrs-B_3) acceleration tensor of link 3 */
+        const real rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z;
+        const real rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y;
+        const real rrrs_B_3_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z;
+        const real rrrs_B_3_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x;
+        const real rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y;
+        const real rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x;
         /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_x = rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x -
-            axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_y = rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z;
-        const real rrrs_acc_3_z = rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z;
-        /* (rrrs-alpha_1) angular acceleration of link 1 */
-        const real rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2;
-        const real rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1;
-        /* (rrrs-alpha_2) angular acceleration of link 2 */
-        const real rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t;
-        const real rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y;
-        /* (rrrs-alpha_3) angular acceleration of link 3 */
-        const real rrrs_alpha_3_x = rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 -
-            rrrs_alpha_2_y*rrrs_s_3;
-        const real rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 -
-            rrrs_zeta_3_y;
-        const real rrrs_alpha_3_z = inv_rrrs_platform_joint_offset_x*(rrrs_rel_y +
-            rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2;
-        /* (rrrs-B_3) acceleration tensor of link 3 */
-        const real rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z;
-        const real rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y;
-        const real rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z;
-        const real rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x;
-        const real rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y;
-        const real rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x;
+        const real rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x
+            - axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
+        const real rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x
+            - axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
+        const real rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x
+            - axis_z_rrrs_axes3_y*gravity_y - axis_z_rrrs_axes3_z*gravity_z;
         /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rrrs_J_3_xy = m->rrrs_J_3_xy[i];
-        const real rrrs_J_3_xz = m->rrrs_J_3_xz[i];
-        const real rrrs_J_3_yz = m->rrrs_J_3_yz[i];
-        const real rrrs_Sigma_3_yy = m->rrrs_Sigma_3_yy[i];
-        const real rrrs_Sigma_3_zz = m->rrrs_Sigma_3_zz[i];
-        const real rrrs_h_3_y = m->rrrs_h_3_y[i];
-        const real rrrs_h_3_z = m->rrrs_h_3_z[i];
-        const real rrrs_mu_3_x = rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy +
-            rrrs_J_3_yz*(rrrs_W_3_t_2 - rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y -
-            rrrs_B_3_yz*rrrs_Sigma_3_zz - rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z;
-        const real rrrs_Sigma_3_xx = m->rrrs_Sigma_3_xx[i];
-        const real rrrs_h_3_x = m->rrrs_h_3_x[i];
-        const real rrrs_mu_3_y = rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy +
-            rrrs_acc_3_x*rrrs_h_3_z - rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx -
-            rrrs_J_3_xz*(rrrs_W_3_t - rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x;
-        const real rrrs_mu_3_z = rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx +
-            rrrs_J_3_xy*(rrrs_W_3_t - rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x -
-            rrrs_B_3_xy*rrrs_Sigma_3_yy - rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y;
-        /* (rrrs-B_2) acceleration tensor of link 2 */
-        const real rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2;
-        const real rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2;
-        const real rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y;
-        const real rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x;
+        const real rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
+        const real rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
+        const real rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
+        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
+        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
+        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
+        const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
+        const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
+        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+        const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 -
+            rrrs_mu_3_t_3) + rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z;
+        const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
+        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+        const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+            rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z
+            - rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
+            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x;
+        const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t -
+            rrrs_mu_3_t_2) + rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y;
         /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrrs_J_2_xy = m->rrrs_J_2_xy[i];
-        const real rrrs_J_2_xz = m->rrrs_J_2_xz[i];
-        const real rrrs_J_2_yz = m->rrrs_J_2_yz[i];
-        const real rrrs_Sigma_2_yy = m->rrrs_Sigma_2_yy[i];
-        const real rrrs_Sigma_2_zz = m->rrrs_Sigma_2_zz[i];
-        const real rrrs_h_2_y = m->rrrs_h_2_y[i];
-        const real rrrs_h_2_z = m->rrrs_h_2_z[i];
-        const real rrrs_mu_2_x = rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy +
-            rrrs_J_2_yz*(rrrs_W_2_t_2 - rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z -
-            rrrs_B_2_zx*rrrs_J_2_xy - rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y;
-        const real rrrs_Sigma_2_xx = m->rrrs_Sigma_2_xx[i];
-        const real rrrs_h_2_x = m->rrrs_h_2_x[i];
-        const real rrrs_mu_2_y = rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x -
-            rrrs_B_2_xy*rrrs_J_2_yz - rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t -
-            rrrs_W_2_t_3) - rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z;
-        const real rrrs_mu_2_z = rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t -
-            rrrs_W_2_t_2) + rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy -
-            rrrs_J_2_xz*rrrs_alpha_1_t - rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x;
+        const real rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
+        const real rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
+        const real rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2;
+        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
+        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
+        const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
+        const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
+        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
+        const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2;
+        const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2;
+        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
+        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
+        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
+        const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
+        const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
+        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
+        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
+        const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 -
+            rrrs_mu_2_t_5) + rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z -
+            rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y;
+        const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
+        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
+        const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
+        const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+            rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y + rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+            rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t -
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
         /* (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3;
-        const real rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3;
-        const real rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z;
+        const real rrrs_N_2_in_axes2_x = rrrs_mu_2_in_axes2_x + rrrs_c_3*rrrs_mu_3_in_axes3_x +
+            rrrs_mu_3_in_axes3_y*rrrs_s_3_t;
+        const real rrrs_N_2_in_axes2_y = rrrs_mu_2_in_axes2_y + rrrs_c_3*rrrs_mu_3_in_axes3_y -
+            rrrs_mu_3_in_axes3_x*rrrs_s_3_t;
+        const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
         /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrrs_J_1_xx = m->rrrs_J_1_xx[i];
-        const real rrrs_h_1_y = m->rrrs_h_1_y[i];
-        const real rrrs_h_1_z = m->rrrs_h_1_z[i];
-        const real rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y -
-            rrrs_g_r1_y*rrrs_h_1_z;
+        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
+        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
+        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
+        const real rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 -
+            rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z;
         /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2;
+        const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 +
+            rrrs_N_2_in_axes2_y*rrrs_c_2;
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z;
+        const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrrs_c_x = rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) -
-            inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x - rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y -
-            rrrs_B_3_xz*rrrs_h_3_z;
-        const real rrrs_c_y = rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t -
-            rrrs_B_3_yx*rrrs_h_3_x - rrrs_B_3_yz*rrrs_h_3_z;
-        const real rrrs_c_z = rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
-            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y;
+        const real rrrs_c_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
+            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z;
+        const real rrrs_c_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
+            rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
+        const real rrrs_c_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
+            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
+            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z;
         /* (rrrs-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrrs_link3_mass = m->rrrs_link3_mass[i];
-        const real rrrs_c_true_x = rrrs_c_x - rrrs_acc_3_x*rrrs_link3_mass;
-        const real rrrs_c_true_y = rrrs_c_y - rrrs_acc_3_y*rrrs_link3_mass;
-        const real rrrs_c_true_z = rrrs_c_z - rrrs_acc_3_z*rrrs_link3_mass;
-        const real rrrs_c_true_in_base_x = axis_x_rrrs_axes3_x*rrrs_c_true_x +
-            axis_y_rrrs_axes3_in_base_x*rrrs_c_true_y + axis_z_rrrs_axes3_in_base_x*rrrs_c_true_z;
-        const real rrrs_c_true_in_base_y = axis_x_rrrs_axes3_y*rrrs_c_true_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_c_true_y + axis_z_rrrs_axes3_in_base_y*rrrs_c_true_z;
-        const real rrrs_c_true_in_base_z = axis_x_rrrs_axes3_z*rrrs_c_true_x +
-            axis_y_rrrs_axes3_in_base_z*rrrs_c_true_y + axis_z_rrrs_axes3_in_base_z*rrrs_c_true_z;
-        o[0*count + k] = rrrs_c_true_in_base_x;
-        o[1*count + k] = rrrs_c_true_in_base_y;
-        o[2*count + k] = rrrs_c_true_in_base_z;
-        o[3*count + k] = rrrs_w_1_t_3;
-        o[4*count + k] = rrrs_w_1_t_4;
-        o[5*count + k] = rrrs_w_1_t_5;
-        o[6*count + k] = -rrrs_w_2_t;
-        o[7*count + k] = -rrrs_w_2_t_2;
-        o[8*count + k] = -rrrs_w_2_t_3;
+        const real rrrs_c_true_in_axes3_x = rrrs_c_in_axes3_x -
+            rrrs_acc_3_in_axes3_x*rrrs_link3_mass;
+        const real rrrs_c_true_in_axes3_y = rrrs_c_in_axes3_y -
+            rrrs_acc_3_in_axes3_y*rrrs_link3_mass;
+        const real rrrs_c_true_in_axes3_z = rrrs_c_in_axes3_z -
+            rrrs_acc_3_in_axes3_z*rrrs_link3_mass;
+        const real rrrs_c_true_x = axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
+            axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z;
+        const real rrrs_c_true_y = axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
+            axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z;
+        const real rrrs_c_true_z = axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
+            axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z;
+        /* (rrrs-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rrrs_c_true_x;
+        o[1*count + k] = rrrs_c_true_y;
+        o[2*count + k] = rrrs_c_true_z;
+        /* (rrrs-w_1) reciprocal vector 1 */
+        o[3*count + k] = rrrs_w_1_x;
+        o[4*count + k] = rrrs_w_1_y;
+        o[5*count + k] = rrrs_w_1_z;
+        /* (rrrs-w_2) reciprocal vector 2 */
+        o[6*count + k] = rrrs_w_2_x;
+        o[7*count + k] = rrrs_w_2_y;
+        o[8*count + k] = rrrs_w_2_z;
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
         o[10*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[9*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -5703,13 +5879,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -5775,26 +5953,32 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -5802,62 +5986,61 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (potential) potential energy */
-        const real rrrs_b_r0_x = m->rrrs_b_r0_x[i];
-        const real rrrs_b_r0_y = m->rrrs_b_r0_y[i];
-        const real rrrs_b_r1_x = rrrs_b_r0_y*rrrs_s_1 - rrrs_b_r0_x*rrrs_c_1;
-        const real rrrs_b_r1_y = -rrrs_b_r0_x*rrrs_s_1 - rrrs_b_r0_y*rrrs_c_1;
-        /* (rrrs-h_3) first moment of link 3 about the connection point */
-        const real rrrs_h_3_x = m->rrrs_h_3_x[i];
-        const real rrrs_h_3_y = m->rrrs_h_3_y[i];
-        const real rrrs_h_3_r0_x = rrrs_c_3*rrrs_h_3_x + rrrs_h_3_y*rrrs_s_3;
-        const real rrrs_h_3_r0_y = rrrs_c_3*rrrs_h_3_y - rrrs_h_3_x*rrrs_s_3;
-        /* (potential) potential energy */
-        const real rrrs_g_r0_x = m->rrrs_g_r0_x[i];
-        const real rrrs_g_r0_y = m->rrrs_g_r0_y[i];
-        const real rrrs_h_1_y = m->rrrs_h_1_y[i];
-        const real rrrs_h_2_x = m->rrrs_h_2_x[i];
-        const real rrrs_h_2_y = m->rrrs_h_2_y[i];
-        const real rrrs_link1_mass = m->rrrs_link1_mass[i];
-        const real rrrs_link2_mass = m->rrrs_link2_mass[i];
-        const real rrrs_potential_t_3 = (-rrrs_c_1*rrrs_g_r0_y -
-            rrrs_g_r0_x*rrrs_s_1)*(rrrs_b_r1_y*rrrs_link1_mass + rrrs_b_r1_y*rrrs_link2_mass +
-            rrrs_h_2_y*rrrs_s_2 + rrrs_h_3_r0_y*rrrs_s_2 - rrrs_h_1_y - rrrs_c_2*rrrs_h_2_x -
-            rrrs_c_2*rrrs_h_3_r0_x);
-        const real rrrs_g_r0_z = m->rrrs_g_r0_z[i];
-        const real rrrs_h_1_x = m->rrrs_h_1_x[i];
-        const real rrrs_h_1_z = m->rrrs_h_1_z[i];
-        const real rrrs_h_2_z = m->rrrs_h_2_z[i];
-        const real rrrs_h_3_z = m->rrrs_h_3_z[i];
         const real rrrs_potential_t = m->rrrs_potential_t[i];
         const real rrrs_potential_t_2 = m->rrrs_potential_t_2[i];
-        const real rrrs_potential_t_4 = rrrs_potential_t_3 + rrrs_g_r0_z*(rrrs_h_1_x +
-            rrrs_potential_t + rrrs_potential_t_2 - rrrs_c_2*rrrs_h_2_y - rrrs_c_2*rrrs_h_3_r0_y -
-            rrrs_h_2_x*rrrs_s_2 - rrrs_h_3_r0_x*rrrs_s_2) + (rrrs_g_r0_y*rrrs_s_1 -
-            rrrs_c_1*rrrs_g_r0_x)*(rrrs_h_1_z + rrrs_h_2_z + rrrs_h_3_z +
-            rrrs_b_r1_x*rrrs_link1_mass + rrrs_b_r1_x*rrrs_link2_mass);
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_potential_t_4 : rrrs_potential_t_4;  /* total_rrrs */
+        const real rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1;
+        const real rrrs_b_in_spec1_y = rrrs_potential_t*rrrs_s_1 - rrrs_c_1*rrrs_potential_t_2;
+        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+        const real rrrs_potential_t_5 = rrrs_c_3*rrrs_h_3_in_spec3_x +
+            rrrs_h_3_in_spec3_y*rrrs_s_3_t;
+        const real rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y -
+            rrrs_h_3_in_spec3_x*rrrs_s_3_t;
+        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
+        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
+        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
+        const real rrrs_link1_mass = m->rrrs_link1_mass[i];
+        const real rrrs_link2_mass = m->rrrs_link2_mass[i];
+        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
+        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
+        const real rrrs_potential_t_7 = (rrrs_c_1*rrrs_mu_2_t_2 -
+            rrrs_mu_2_t*rrrs_s_1)*(rrrs_c_2*rrrs_h_2_in_spec2_x + rrrs_c_2*rrrs_potential_t_5 -
+            rrrs_h_1_in_spec1_y - rrrs_b_in_spec1_y*rrrs_link1_mass -
+            rrrs_b_in_spec1_y*rrrs_link2_mass - rrrs_h_2_in_spec2_y*rrrs_s_2 -
+            rrrs_potential_t_6*rrrs_s_2);
+        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
+        const real rrrs_h_1_in_spec1_x = m->rrrs_h_1_in_spec1_x[i];
+        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
+        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
+        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+        const real rrrs_potential_t_3 = m->rrrs_potential_t_3[i];
+        const real rrrs_potential_t_4 = m->rrrs_potential_t_4[i];
+        const real rrrs_potential_t_8 = rrrs_potential_t_7 +
+            rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x + rrrs_potential_t_3 + rrrs_potential_t_4 +
+            rrrs_c_2*rrrs_h_2_in_spec2_y + rrrs_c_2*rrrs_potential_t_6 +
+            rrrs_h_2_in_spec2_x*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t +
+            rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
+            rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
+            rrrs_b_in_spec1_z*rrrs_link2_mass);
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rrrs_potential_t_8 : rrrs_potential_t_8;  /* potential_t_2 */
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         o[1*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
@@ -5879,8 +6062,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_rrrs = sums[0*w + k];
-        const real potential_ = -potential_t - total_rrrs;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5950,6 +6134,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -5970,27 +6155,27 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rrrs_q_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
             R_yz*rrrs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rrrs_q_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
             R_zz*rrrs_platform_point_z;
         const real rrrs_base_point_x = m->rrrs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x;
+        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
         const real rrrs_base_point_y = m->rrrs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y;
+        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
         const real rrrs_base_point_z = m->rrrs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z;
+        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
         /* (rrrs-px_1) component along the reference direction */
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
         const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
@@ -6008,26 +6193,32 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         /* (rrrs-root_1) root, with the sign of the branch */
         const real rrrs_branch_1 = m->rrrs_branch_1[i];
         const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
         /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
         const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_t = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
-            rrrs_S_z*rrrs_base_frame_zx;
+        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
+            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
         /* (rrrs-x_2) from the origin of joint 2 to the connection point */
         const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x;
+        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
         /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z;
+        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
+            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
         const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
         const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
         const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
         /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
         const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1;
+        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
         /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z;
+        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
         /* (rrrs-rho2_2) squared amplitude */
         const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
         /* (rrrs-disc_2) discriminant */
@@ -6035,131 +6226,124 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         /* (rrrs-root_2) root, with the sign of the branch */
         const real rrrs_branch_2 = m->rrrs_branch_2[i];
         const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real rrrs_c_2_t = -1/rrrs_rho2_2;
+        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
         /* (rrrs-x_3) from the origin of joint 3 to the connection point */
         const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x;
+        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3 =
+        const real rrrs_s_3_t =
             inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
         /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x;
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
-        const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
+        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+            rrrs_c_3*rrrs_platform_joint_offset_x;
+        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t -
+            rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t;
         /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2;
-        const real rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3;
-        /* (rrrs-r_1) from joint 1 to the connection point, along the links */
-        const real rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t;
-        const real rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_v_1_z = rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3);
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 -
-            rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3;
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
+        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
+        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
+        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
+        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+            rrrs_s_3_t*rrrs_v_1_t_2);
         /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 -
-            rrrs_base_frame_xy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 -
-            rrrs_base_frame_yy*rrrs_c_1;
-        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 -
-            rrrs_base_frame_zy*rrrs_c_1;
-        const real rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1;
-        const real rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x;
-        const real axis_y_rrrs_axes3_in_base_x = rrrs_base_frame_xx*rrrs_e_1_r2_y +
-            rrrs_base_frame_xy*rrrs_w_1_t + rrrs_base_frame_xz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_y = rrrs_base_frame_yx*rrrs_e_1_r2_y +
-            rrrs_base_frame_yy*rrrs_w_1_t + rrrs_base_frame_yz*rrrs_w_1_t_2;
-        const real axis_y_rrrs_axes3_in_base_z = rrrs_base_frame_zx*rrrs_e_1_r2_y +
-            rrrs_base_frame_zy*rrrs_w_1_t + rrrs_base_frame_zz*rrrs_w_1_t_2;
-        const real inv_rrrs_v_1_z = 1/rrrs_v_1_z;
+        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
+            rrrs_base_frame_xz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
+            rrrs_base_frame_yz*rrrs_s_1;
+        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
+            rrrs_base_frame_zz*rrrs_s_1;
+        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
+        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
+        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        const real inv_rrrs_r_2_r0_y = 1/rrrs_r_2_r0_y;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z;
-        const real rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4;
-        const real rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5;
-        const real rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t =
-            inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y);
-        const real rrrs_w_2_t_2 =
-            inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z);
-        const real rrrs_w_2_t_3 =
-            inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x);
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3;
-        const real rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t;
-        const real rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rrrs_spread_t = b_c_x - rrrs_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rrrs_spread_t_2 = b_c_y - rrrs_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real rrrs_spread_t_3 = b_c_z - rrrs_platform_point_z;
-        const real rrrs_spread_t_4 = rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2
-            + rrrs_spread_t_3*rrrs_spread_t_3;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_pivot_size = magnitude(rrrs_rho2_1);
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_pivot_size_2 = magnitude(rrrs_rho2_2);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_pivot_size_3 = magnitude(rrrs_v_1_z);
-        const real rrrs_pivot_size_4 = magnitude(rrrs_r_2_r0_y);
+        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
+        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
+        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+        const real rrrs_w_2_x = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y);
+        const real rrrs_w_2_y = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z);
+        const real rrrs_w_2_z = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x);
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_rrrs_rho2_2_t_4 = m->inv_rrrs_rho2_2_t_4[i];
+        const real rrrs_pivot_size = magnitude(rrrs_rho2_1);
+        const real rrrs_pivot_size_2 = magnitude(rrrs_rho2_2);
+        const real rrrs_pivot_size_3 = magnitude(rrrs_v_1_in_axes3_z);
+        const real rrrs_pivot_size_4 = magnitude(rrrs_r_2_in_axes3_y);
+        const real inv_rrrs_rho2_2_t = m->inv_rrrs_rho2_2_t[i];
         const real inv_rrrs_size = m->inv_rrrs_size[i];
         const real inv_rrrs_size_t_3 = m->inv_rrrs_size_t_3[i];
         const real rrrs_least_pivots =
-            lesser(lesser(lesser(root(inv_rrrs_rho2_2_t_4*rrrs_pivot_size_2),
+            lesser(lesser(lesser(root(inv_rrrs_rho2_2_t*rrrs_pivot_size_2),
             inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
             root(inv_rrrs_size_t_3*rrrs_pivot_size));
-        terms[0*count + k] = add ? terms[0*count + k] + rrrs_spread_t_4 : rrrs_spread_t_4;  /* total_rrrs */
-        o[0*count + k] = rrrs_w_1_t_3;
-        o[1*count + k] = rrrs_w_1_t_4;
-        o[2*count + k] = rrrs_w_1_t_5;
+        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
+        const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
+        const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
+        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+        const real rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y;
+        const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
+        const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrrs_spread_t = b_c_in_platform_x - rrrs_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrrs_spread_t_2 = b_c_in_platform_y - rrrs_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real rrrs_spread_t_3 = b_c_in_platform_z - rrrs_platform_point_z;
+        const real rrrs_spread_t_4 = rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2
+            + rrrs_spread_t_3*rrrs_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rrrs_spread_t_4 : rrrs_spread_t_4;  /* spread_rrrs */
+        /* (rrrs-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrrs_w_1_x;
+        o[1*count + k] = rrrs_w_1_y;
+        o[2*count + k] = rrrs_w_1_z;
+        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rrrs_H_a_1_x;
         o[4*count + k] = rrrs_H_a_1_y;
         o[5*count + k] = rrrs_H_a_1_z;
-        o[6*count + k] = -rrrs_w_2_t;
-        o[7*count + k] = -rrrs_w_2_t_2;
-        o[8*count + k] = -rrrs_w_2_t_3;
+        /* (rrrs-w_2) reciprocal vector 2 */
+        o[6*count + k] = rrrs_w_2_x;
+        o[7*count + k] = rrrs_w_2_y;
+        o[8*count + k] = rrrs_w_2_z;
+        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = rrrs_H_a_2_x;
         o[10*count + k] = rrrs_H_a_2_y;
         o[11*count + k] = rrrs_H_a_2_z;
+        /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[12*count + k] = rrrs_least_pivots;
         o[13*count + k] = rrrs_disc_2;
-        o[16*count + k] = ((rrrs_w_1_t_3 + (rrrs_w_1_t_4 + rrrs_w_1_t_5)) + ((rrrs_H_a_1_x +
-            rrrs_H_a_1_y) + (rrrs_H_a_1_z + rrrs_w_2_t))) + ((rrrs_w_2_t_2 + (rrrs_w_2_t_3 +
+        o[16*count + k] = ((rrrs_w_1_x + (rrrs_w_1_y + rrrs_w_1_z)) + ((rrrs_H_a_1_x +
+            rrrs_H_a_1_y) + (rrrs_H_a_1_z + rrrs_w_2_x))) + ((rrrs_w_2_y + (rrrs_w_2_z +
             rrrs_H_a_2_x)) + ((rrrs_H_a_2_y + rrrs_H_a_2_z) + (rrrs_least_pivots + rrrs_disc_2)));
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
         o[15*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
             UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_z) > TOLERANCE*rrrs_size) + UNLESS(magnitude(-rrrs_r_2_r0_y)
-            > TOLERANCE*rrrs_size);
+            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
         o[14*count + k] = UNLESS(rrrs_disc_2 >= 0);
     }
 }
@@ -6193,9 +6377,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_rrrs = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_rrrs = sums[0*w + k];
-        const real spread_ = spread_t*root(total_rrrs);
+        const real spread_ = root(spread_rrrs)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -380,7 +380,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -585,83 +585,116 @@ def _prepare(p):
     rrrs_size_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
     rrrs_size_t_3 = 6.238219509759999e-07 + rrrs_size_t + rrrs_size_t_2
     rrrs_size = sqrt(rrrs_size_t_3)
-    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    rrrs_Kd_2_t = 0.5*rrrs_size_t
-    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
-    # (rrrs-rho2_2) squared amplitude
-    rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
-    # (rrrs-xi_2) the vector from joint 2 to the connection point, resolved along link 2
-    inv_rrrs_size_t = 1.0/rrrs_size_t
-    # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-    inv_rrrs_size_t_2 = 1.0/rrrs_size_t_2
-    # (rrrs-rho_tip_3) connection point to the centre of mass of link 3
-    rrrs_rho_tip_3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
-    # (rrrs-h_3) first moment of link 3 about the connection point
-    rrrs_h_3_x = rrrs_link3_mass*rrrs_rho_tip_3_x
-    rrrs_h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
-    rrrs_h_3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    # (rrrs-w_3) reciprocal vector 3
-    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
-    # (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    rrrs_d_phi_3_t = inv_rrrs_platform_joint_offset_x*rrrs_h_3_y
-    # (rrrs-J_3) inertia tensor of link 3 about the connection point
-    rrrs_J_3_t = rrrs_rho_tip_3_x*rrrs_rho_tip_3_x
-    rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
-    rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
-    rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3
-    rrrs_J_3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t - rrrs_J_3_t_4)
-    rrrs_J_3_xy = (
-    rrrs_link3_inertia_xy - rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_x
-    )
-    rrrs_J_3_xz = (
-    rrrs_link3_inertia_xz - rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_x
-    )
-    rrrs_J_3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 - rrrs_J_3_t_4)
-    rrrs_J_3_yz = (
-    rrrs_link3_inertia_yz -
-        rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    )
-    rrrs_J_3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
-    # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    rrrs_d_Gamma_3_t = inv_rrrs_platform_joint_offset_x*rrrs_J_3_zz
-    rrrs_d_Gamma_3_y = rrrs_d_Gamma_3_t + rrrs_h_3_x
-    # (rrrs-J_2) inertia tensor of link 2 about the origin of link 2
-    rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
-    rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
-    rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
-    rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3
-    rrrs_J_2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t - rrrs_J_2_t_4)
-    rrrs_J_2_xy = (
-    rrrs_link2_inertia_xy -
-        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass
-    )
-    rrrs_J_2_xz = (
-    rrrs_link2_inertia_xz -
-        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    )
-    rrrs_J_2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 - rrrs_J_2_t_4)
-    rrrs_J_2_yz = (
-    rrrs_link2_inertia_yz -
-        rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    )
-    rrrs_J_2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 - rrrs_J_2_t_4)
-    # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-    rrrs_Jc_2_zz = rrrs_J_2_zz + rrrs_J_3_zz
-    # (rrrs-h_2) first moment of link 2 about the origin of link 2
-    rrrs_h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
-    rrrs_h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
-    rrrs_h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    # (rrrs-h_1) first moment of link 1 about the origin of link 1
+    rrrs_h_1_in_spec1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
+    rrrs_h_1_in_spec1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
+    rrrs_h_1_in_spec1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
     # (rrrs-J_1) inertia tensor of link 1 about the origin of link 1
     rrrs_J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
     rrrs_J_1_t_2 = (
     rrrs_J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
         rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
     )
-    rrrs_J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
+    rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
+    # (rrrs-h_2) first moment of link 2 about the origin of link 2
+    rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
+    rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    # (rrrs-J_2) inertia tensor of link 2 about the origin of link 2
+    rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
+    rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
+    rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
+    rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3
+    rrrs_J_2_in_spec2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t - rrrs_J_2_t_4)
+    rrrs_J_2_in_spec2_xy = (
+    rrrs_link2_inertia_xy -
+        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    )
+    rrrs_J_2_in_spec2_xz = (
+    rrrs_link2_inertia_xz -
+        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    )
+    rrrs_J_2_in_spec2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 - rrrs_J_2_t_4)
+    rrrs_J_2_in_spec2_yz = (
+    rrrs_link2_inertia_yz -
+        rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    )
+    rrrs_J_2_in_spec2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 - rrrs_J_2_t_4)
+    # (rrrs-rho_tip_3) connection point to the centre of mass of link 3
+    rrrs_rho_tip_3_in_spec3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
+    # (rrrs-h_3) first moment of link 3 about the connection point
+    rrrs_h_3_in_spec3_x = rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x
+    rrrs_h_3_in_spec3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
+    rrrs_h_3_in_spec3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
+    # (rrrs-J_3) inertia tensor of link 3 about the connection point
+    rrrs_J_3_t = rrrs_rho_tip_3_in_spec3_x*rrrs_rho_tip_3_in_spec3_x
+    rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
+    rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
+    rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3
+    rrrs_J_3_in_spec3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t - rrrs_J_3_t_4)
+    rrrs_J_3_in_spec3_xy = (
+    rrrs_link3_inertia_xy - rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x
+    )
+    rrrs_J_3_in_spec3_xz = (
+    rrrs_link3_inertia_xz - rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x
+    )
+    rrrs_J_3_in_spec3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 - rrrs_J_3_t_4)
+    rrrs_J_3_in_spec3_yz = (
+    rrrs_link3_inertia_yz -
+        rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
+    )
+    rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
+    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    rrrs_Kd_2_t = 0.5*rrrs_size_t
+    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
+    # (rrrs-rho2_2) squared amplitude
+    rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
+    # (rrrs-x_3) from the origin of joint 3 to the connection point
+    inv_rrrs_size_t = 1.0/rrrs_size_t
+    # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_rrrs_size_t_2 = 1.0/rrrs_size_t_2
+    # (rrrs-w_3) reciprocal vector 3
+    rrrs_w_3_in_axes3_y = 1.0/rrrs_platform_joint_offset_x
+    # (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    rrrs_d_phi_3_t = rrrs_h_3_in_spec3_y*rrrs_w_3_in_axes3_y
+    # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    rrrs_Jc_2_in_axes2_zz = rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz
+    # (rrrs-trace_J_3) half the trace of that inertia tensor
+    rrrs_trace_J_3 = (
+    0.5*rrrs_J_3_in_spec3_xx + 0.5*rrrs_J_3_in_spec3_yy + 0.5*rrrs_J_3_in_spec3_zz
+    )
+    # (rrrs-Sigma_3) second moment of mass of the links that turn with link 3
+    rrrs_Sigma_3_in_axes3_xx = rrrs_trace_J_3 - rrrs_J_3_in_spec3_xx
+    rrrs_Sigma_3_in_axes3_yy = rrrs_trace_J_3 - rrrs_J_3_in_spec3_yy
+    rrrs_Sigma_3_in_axes3_zz = rrrs_trace_J_3 - rrrs_J_3_in_spec3_zz
+    # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    rrrs_d_Gamma_3_t = rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y
+    rrrs_d_Gamma_3_in_axes3_y = rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x
+    # (rrrs-trace_J_2) half the trace of that inertia tensor
+    rrrs_trace_J_2 = (
+    0.5*rrrs_J_2_in_spec2_xx + 0.5*rrrs_J_2_in_spec2_yy + 0.5*rrrs_J_2_in_spec2_zz
+    )
+    # (rrrs-Sigma_2) second moment of mass of the links that turn with link 2
+    rrrs_Sigma_2_in_axes2_xx = rrrs_trace_J_2 - rrrs_J_2_in_spec2_xx
+    rrrs_Sigma_2_in_axes2_yy = rrrs_trace_J_2 - rrrs_J_2_in_spec2_yy
+    rrrs_Sigma_2_in_axes2_zz = rrrs_trace_J_2 - rrrs_J_2_in_spec2_zz
+    # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+    rrrs_mu_2_t = (
+    gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy + gravity_z*rrrs_base_frame_zy
+    )
+    rrrs_mu_2_t_2 = (
+    gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz + gravity_z*rrrs_base_frame_zz
+    )
+    rrrs_g_in_axes1_z = (
+    gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
+    )
+    # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_rrrs_size_t_3 = 1.0/rrrs_size_t_3
+    inv_rrrs_rho2_2_t = 1.0/rrrs_rho2_2_t
+    inv_rrrs_size = 1.0/rrrs_size
     # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    rrrs_d_c_yy = (
-    -inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_y -
-        inv_rrrs_platform_joint_offset_x*rrrs_h_3_x
+    rrrs_d_c_in_axes3_yy = (
+    -rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_y - rrrs_h_3_in_spec3_x*rrrs_w_3_in_axes3_y
     )
     # (h_star) first moment about the platform origin
     rrrs_h_star_t = rrrs_link3_mass*rrrs_platform_point_x
@@ -678,157 +711,138 @@ def _prepare(p):
     rrrs_J_star_t_8 = rrrs_link3_mass*(rrrs_J_star_t_2 - rrrs_J_star_t_4)
     rrrs_J_star_t_9 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z
     rrrs_J_star_t_10 = rrrs_link3_mass*(rrrs_J_star_t_3 - rrrs_J_star_t_4)
-    # (rrrs-trace_J_3) half the trace of that inertia tensor
-    rrrs_trace_J_3 = 0.5*rrrs_J_3_xx + 0.5*rrrs_J_3_yy + 0.5*rrrs_J_3_zz
-    # (rrrs-Sigma_3) second moment of mass of the links that turn with link 3
-    rrrs_Sigma_3_xx = rrrs_trace_J_3 - rrrs_J_3_xx
-    rrrs_Sigma_3_yy = rrrs_trace_J_3 - rrrs_J_3_yy
-    rrrs_Sigma_3_zz = rrrs_trace_J_3 - rrrs_J_3_zz
-    # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    rrrs_g_r0_x = (
-    gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy + gravity_z*rrrs_base_frame_zy
-    )
-    rrrs_g_r0_y = (
-    gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz + gravity_z*rrrs_base_frame_zz
-    )
-    rrrs_g_r0_z = (
-    gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
-    )
-    # (rrrs-trace_J_2) half the trace of that inertia tensor
-    rrrs_trace_J_2 = 0.5*rrrs_J_2_xx + 0.5*rrrs_J_2_yy + 0.5*rrrs_J_2_zz
-    # (rrrs-Sigma_2) second moment of mass of the links that turn with link 2
-    rrrs_Sigma_2_xx = rrrs_trace_J_2 - rrrs_J_2_xx
-    rrrs_Sigma_2_yy = rrrs_trace_J_2 - rrrs_J_2_yy
-    rrrs_Sigma_2_zz = rrrs_trace_J_2 - rrrs_J_2_zz
-    # (rrrs-h_1) first moment of link 1 about the origin of link 1
-    rrrs_h_1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
-    rrrs_h_1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
-    rrrs_h_1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
     # (potential) potential energy
-    rrrs_b_r0_x = (
+    rrrs_potential_t = (
     rrrs_base_frame_xy*rrrs_base_point_x + rrrs_base_frame_yy*rrrs_base_point_y +
         rrrs_base_frame_zy*rrrs_base_point_z
     )
-    rrrs_b_r0_y = (
+    rrrs_potential_t_2 = (
     rrrs_base_frame_xz*rrrs_base_point_x + rrrs_base_frame_yz*rrrs_base_point_y +
         rrrs_base_frame_zz*rrrs_base_point_z
     )
-    rrrs_b_r0_z = (
+    rrrs_b_in_spec1_x = (
     rrrs_base_frame_xx*rrrs_base_point_x + rrrs_base_frame_yx*rrrs_base_point_y +
         rrrs_base_frame_zx*rrrs_base_point_z
     )
-    rrrs_potential_t = rrrs_b_r0_z*rrrs_link1_mass
-    rrrs_potential_t_2 = rrrs_link2_mass*(rrrs_b_r0_z + rrrs_joint2_offset_x)
-    # (rrrs-rho2_1) squared amplitude
-    inv_rrrs_size_t_3 = 1.0/rrrs_size_t_3
-    # (rrrs-rho2_2) squared amplitude
-    inv_rrrs_rho2_2_t_4 = 1.0/rrrs_rho2_2_t
-    # (rrrs-w_1) reciprocal vector 1
-    inv_rrrs_size = 1.0/rrrs_size
-    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
-    total_rrrs_x = np.sum(np.broadcast_to(rrrs_h_star_t, _rrrs))
-    total_rrrs_y = np.sum(np.broadcast_to(rrrs_h_star_t_2, _rrrs))
-    total_rrrs_z = np.sum(np.broadcast_to(rrrs_h_star_t_3, _rrrs))
-    total_rrrs_xx = np.sum(np.broadcast_to(rrrs_J_star_t_5, _rrrs))
-    total_rrrs_xy = np.sum(np.broadcast_to(rrrs_J_star_t_6, _rrrs))
-    total_rrrs_xz = np.sum(np.broadcast_to(rrrs_J_star_t_7, _rrrs))
-    total_rrrs_yy = np.sum(np.broadcast_to(rrrs_J_star_t_8, _rrrs))
-    total_rrrs_yz = np.sum(np.broadcast_to(rrrs_J_star_t_9, _rrrs))
-    total_rrrs_zz = np.sum(np.broadcast_to(rrrs_J_star_t_10, _rrrs))
-    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
-    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
-    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
-    total_rrrs_2 = np.sum(np.broadcast_to(rrrs_size_t_3, _rrrs))
+    rrrs_potential_t_3 = rrrs_b_in_spec1_x*rrrs_link1_mass
+    rrrs_potential_t_4 = rrrs_link2_mass*(rrrs_b_in_spec1_x + rrrs_joint2_offset_x)
+    m_star_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
+    h_star_rrrs_in_platform_x = np.sum(np.broadcast_to(rrrs_h_star_t, _rrrs))
+    h_star_rrrs_in_platform_y = np.sum(np.broadcast_to(rrrs_h_star_t_2, _rrrs))
+    h_star_rrrs_in_platform_z = np.sum(np.broadcast_to(rrrs_h_star_t_3, _rrrs))
+    J_star_rrrs_in_platform_xx = np.sum(np.broadcast_to(-rrrs_J_star_t_5, _rrrs))
+    J_star_rrrs_in_platform_xy = np.sum(np.broadcast_to(-rrrs_J_star_t_6, _rrrs))
+    J_star_rrrs_in_platform_xz = np.sum(np.broadcast_to(-rrrs_J_star_t_7, _rrrs))
+    J_star_rrrs_in_platform_yy = np.sum(np.broadcast_to(-rrrs_J_star_t_8, _rrrs))
+    J_star_rrrs_in_platform_yz = np.sum(np.broadcast_to(-rrrs_J_star_t_9, _rrrs))
+    J_star_rrrs_in_platform_zz = np.sum(np.broadcast_to(-rrrs_J_star_t_10, _rrrs))
+    b_c_rrrs_in_platform_x = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
+    b_c_rrrs_in_platform_y = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
+    b_c_rrrs_in_platform_z = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
+    legs_size_rrrs = np.sum(np.broadcast_to(rrrs_size_t_3, _rrrs))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rrrs
+    m_star = m_star_rrrs + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_rrrs_x
-    h_star_y = h_star_t_2 + total_rrrs_y
-    h_star_z = h_star_t_3 + total_rrrs_z
+    h_star_in_platform_x = h_star_rrrs_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_rrrs_in_platform_y + h_star_t_2
+    h_star_in_platform_z = h_star_rrrs_in_platform_z + h_star_t_3
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_rrrs_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_rrrs_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_rrrs_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrs_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrs_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrs_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_rrrs_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_rrrs_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_rrrs_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_rrrs_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_rrrs_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_rrrs_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_rrrs_x_2
-    b_c_y = 0.3333333333333333*total_rrrs_y_2
-    b_c_z = 0.3333333333333333*total_rrrs_z_2
+    b_c_in_platform_x = 0.3333333333333333*b_c_rrrs_in_platform_x
+    b_c_in_platform_y = 0.3333333333333333*b_c_rrrs_in_platform_y
+    b_c_in_platform_z = 0.3333333333333333*b_c_rrrs_in_platform_z
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_rrrs_2)
+    legs_size = sqrt(legs_size_rrrs)*spread_t
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
-                    rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t,
-                    rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_g_r0_x, rrrs_g_r0_y,
-                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
+                    rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
+                    rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
+                    rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+                    rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
-                    rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t, rrrs_d_Gamma_3_y, rrrs_d_c_yy,
-                    rrrs_d_phi_3_t, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
+                    rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
+                    rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
+                    rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
-                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+                    rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+                    rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -848,23 +862,28 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
-                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+                    rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+                    rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -886,14 +905,14 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
-                    rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -901,14 +920,14 @@ def _prepare(p):
         (),
             (
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
-                    rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -916,53 +935,58 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
-                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
-                ),
-            ),
-        ),
-        "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
-            (
-                (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_b_r0_x, rrrs_b_r0_y,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+                    rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
                     rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
                     rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
                     rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
                     rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_x, rrrs_h_1_y, rrrs_h_1_z,
-                    rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t,
+                    rrrs_mu_2_t_2, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
+                ),
+            ),
+        ),
+        "potential": (
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
+            (
+                (_rrrs,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
-                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-                    rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_rho2_2_t,
-                    rrrs_size_t_3,),
+                    rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_potential_t, rrrs_potential_t_2, rrrs_potential_t_3, rrrs_potential_t_4,
+                    rrrs_rho2_2_t, rrrs_size_t_3,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_rrrs,
-        (inv_rrrs_rho2_2_t_4, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2,
-                    inv_rrrs_size_t_3, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -1464,9 +1488,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1521,78 +1546,100 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
-            rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_d_Gamma_3_t, rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_g_r0_x,
-            rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-            rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
+            rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
+            rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
+            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -1605,531 +1652,578 @@ def _run_dynamics(m, X, V):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
-        # (rrrs-w_3) reciprocal vector 3
-        rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x
-        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x
-        rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y
-        # (rrrs-D_1_3) inertia of joint 3 along joint 1
-        rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y
-        # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3
-        rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x
-        rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz - rrrs_d_Gamma_3_t_3)
-        # (rrrs-J_3) inertia tensor of link 3 about the connection point
-        rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3
-        rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3
-        rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3
-        rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3
-        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3
-        # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz - rrrs_d_Gamma_3_t_3)
-        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrs__y = (
-        -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy + rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3
-            - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 - rrrs_J_3_xx*rrrs_s_3))) -
-            rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx + rrrs__x*rrrs_c_3 +
-            rrrs__x_2*rrrs_s_3))
-        )
-        # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrrs_d_Gamma_1_z = (
-        inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) + rrrs_e_1_r2_x*rrrs_h_3_y -
-            rrrs_e_1_r2_y*rrrs_h_3_x
-        )
-        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_d_G_xz = (
-        rrrs_d_Gamma_3_t_2*rrrs_w_3_t - inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz +
-            rrrs_J_3_yz*rrrs_c_3 - rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz +
-            rrrs_J_3_xz*rrrs_c_3 + rrrs_J_3_yz*rrrs_s_3))
-        )
-        # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrs_d_c_xx = (
-        inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t - inv_rrrs_r_2_r0_y) -
-            rrrs_d_Gamma_3_x*rrrs_w_3_t
-        )
-        rrrs_d_c_xy = (
-        rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y - rrrs_d_Gamma_3_y*rrrs_w_3_t
-        )
-        rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z
-        rrrs_d_c_yz = (
-        rrrs_d_alpha_3_t*rrrs_h_3_z - inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2
-        )
-        # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy
-        rrrs_Q_t_2 = 0.5*rrrs_Q_t
-        rrrs_Q_t_3 = (
-        rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z + rrrs_d_alpha_3_t*rrrs_h_3_y -
-            rrrs_d_alpha_3_t_2*rrrs_h_3_x
-        )
-        rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
-        rrrs_Q_t_5 = (
-        axis_x_rrrs_axes3_x*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2
-        )
-        rrrs_Q_t_6 = (
-        axis_x_rrrs_axes3_y*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2
-        )
-        rrrs_Q_t_7 = (
-        axis_x_rrrs_axes3_z*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2
-        )
-        rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_xz
-        rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_xz
-        rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_xz
-        rrrs_Q_t_11 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8
-        )
-        rrrs_Q_t_12 = 2.0*rrrs_Q_t_11 + rrrs_d_c_xx
-        rrrs_Q_t_13 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8
-        )
-        rrrs_Q_t_14 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8
-        )
-        rrrs_Q_t_15 = (
-        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9
-        )
-        rrrs_Q_t_16 = 2.0*rrrs_Q_t_15 + rrrs_d_c_xx
-        rrrs_Q_t_17 = (
-        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 -
-            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9
-        )
-        rrrs_Q_t_18 = (
-        axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10
-        )
-        rrrs_Q_t_19 = 2.0*rrrs_Q_t_18 + rrrs_d_c_xx
-        # (M_ta) coupling block of M
-        rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z
-        rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2
-        rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x
-        rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x
-        rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y
-        rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
-        rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x
-        rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y
-        rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x
-        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
-        # (M_aa) rotational block of M
-        rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_y
-        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y + rrrs_M_ta_t_9*rrrs_q_in_base_z
-        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_x
-        rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x + rrrs_M_ta_t_5*rrrs_q_in_base_z
-        rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y - rrrs_M_ta_t_9*rrrs_q_in_base_x
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
+        # (rrrs-w_3) reciprocal vector 3
+        rrrs_w_3_in_axes3_x = -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
+        rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-u_1) centripetal acceleration of the connection point
         rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
-        # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
-        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
-        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
-        # (rrrs-W_3) centripetal tensor of link 3
-        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
-        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
-        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
-        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
-        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
-        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
-        # (rrrs-u_1) centripetal acceleration of the connection point
-        rrrs_u_1_tip_x = (
+        rrrs_u_1_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
             axis_x_rrrs_axes3_z*rrrs_u_1_z
         )
-        rrrs_u_1_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z
+        rrrs_u_1_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_u_1_x + axis_y_rrrs_axes3_y*rrrs_u_1_y +
+            axis_y_rrrs_axes3_z*rrrs_u_1_z
         )
-        rrrs_u_1_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z
+        rrrs_u_1_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_u_1_x + axis_z_rrrs_axes3_y*rrrs_u_1_y +
+            axis_z_rrrs_axes3_z*rrrs_u_1_z
+        )
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x
-        rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y
-        rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z
-        # (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x
-        rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z
+        rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z
+        # (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
-        rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o
         # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t
-        rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y
+        rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t
+        rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz
+        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o
+        rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
+        rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y
+        rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
+        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        rrrs_alpha_3_o_x = (
-        rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_o_y*rrrs_s_3
+        rrrs_alpha_3_o_in_axes3_x = (
+        rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+            rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
         )
-        rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 - rrrs_zeta_3_y
-        rrrs_alpha_3_o_z = (
-        inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y + rrrs_qdd_2_o*rrrs_r_2_r0_x) -
-            rrrs_qdd_2_o
+        rrrs_alpha_3_o_in_axes3_y = (
+        rrrs_alpha_2_o_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_o_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
+        )
+        rrrs_alpha_3_o_in_axes3_z = (
+        rrrs_qdd_2_o + rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y -
+            rrrs_qdd_2_o*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-B_3_o) remainder of the acceleration tensor of link 3
-        rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z
-        rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y
-        rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z
-        rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x
-        rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y
-        rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x
+        rrrs_B_3_o_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z
+        rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y
+        rrrs_B_3_o_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z
+        rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
+        rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
+        rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
         # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_o_x = (
-        rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        rrrs_acc_3_o_in_axes3_x = (
+        rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_y = (
-        rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
+        rrrs_acc_3_o_in_axes3_y = (
+        rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+            axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_z = (
-        rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
+        rrrs_acc_3_o_in_axes3_z = (
+        rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+            axis_z_rrrs_axes3_z*gravity_z
+        )
+        # (rrrs-D_1_3) inertia of joint 3 along joint 1
+        rrrs_D_1_3 = (
+        rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x + rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y
+        )
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*rrrs_s_3_t
+        rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*rrrs_c_3
+        rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*rrrs_c_3
+        rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*rrrs_s_3_t
+        rrrs_Jc_2_in_axes2_xy = (
+        rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
+        )
+        rrrs_Jc_2_in_axes1_zz = (
+        rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 + rrrs_c_2*(rrrs_J_2_in_spec2_yy +
+            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) + rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t))
         )
         # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_o_x = (
-        rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
-            rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y - rrrs_B_3_o_yz*rrrs_Sigma_3_zz -
-            rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z
+        rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_o_in_axes3_x = (
+        rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
+            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z
         )
-        rrrs_mu_3_o_y = (
-        rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy + rrrs_acc_3_o_x*rrrs_h_3_z -
-            rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
-            rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x
+        rrrs_mu_3_o_in_axes3_y = (
+        rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
         )
-        rrrs_mu_3_o_z = (
-        rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
-            rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x - rrrs_B_3_o_xy*rrrs_Sigma_3_yy -
-            rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y
+        rrrs_mu_3_o_in_axes3_z = (
+        rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
-        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
-        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
-        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
-        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
-        rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o
-        rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o
-        rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y
-        rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x
+        # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
+        rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
+        rrrs_d_Gamma_3_in_axes3_x = (
+        rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
+        )
         # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_o_x = (
-        rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
-            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_o_zx*rrrs_J_2_xy -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y
+        rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_mu_2_o_in_axes2_x = (
+        rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
         )
-        rrrs_mu_2_o_y = (
-        rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_o_xy*rrrs_J_2_yz -
-            rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        rrrs_mu_2_o_in_axes2_y = (
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
+            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
-        rrrs_mu_2_o_z = (
-        rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
-            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_o_t
-            - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        rrrs_mu_2_o_in_axes2_z = (
+        rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
+            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+            rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3
-        rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3
-        rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z
+        rrrs_N_2_o_in_axes2_x = (
+        rrrs_mu_2_o_in_axes2_x + rrrs_c_3*rrrs_mu_3_o_in_axes3_x +
+            rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t
+        )
+        rrrs_N_2_o_in_axes2_y = (
+        rrrs_mu_2_o_in_axes2_y + rrrs_c_3*rrrs_mu_3_o_in_axes3_y -
+            rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t
+        )
+        rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
+        # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrs_d_Gamma_2_in_axes3_x = (
+        rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
+        )
         # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        rrrs_mu_1_o_in_axes1_z = (
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        )
         # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2
+        rrrs_N_1_o_in_axes1_z = (
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2 + rrrs_N_2_o_in_axes2_y*rrrs_c_2
+        )
+        # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
+            rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
+        )
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_d_G_in_axes3_xz = (
+        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t))
+        )
         # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z
+        rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
+        # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_d_c_in_axes3_xx = (
+        rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x + rrrs_w_3_in_axes3_x) -
+            rrrs_d_Gamma_2_in_axes3_x*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x
+        )
+        rrrs_d_c_in_axes3_xy = (
+        rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
+        )
+        rrrs_d_c_in_axes3_xz = (
+        -rrrs_d_G_in_axes3_xz - rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        )
+        rrrs_d_c_in_axes3_yz = (
+        rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
+            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
+        )
         # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrs_c_o_x = (
-        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x -
-            rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y - rrrs_B_3_o_xz*rrrs_h_3_z
+        rrrs_c_o_in_axes3_x = (
+        rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
+            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_o_y = (
-        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t - rrrs_B_3_o_yx*rrrs_h_3_x -
-            rrrs_B_3_o_yz*rrrs_h_3_z
+        rrrs_c_o_in_axes3_y = (
+        rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
+            rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_o_z = (
-        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_o_z -
-            rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y
+        rrrs_c_o_in_axes3_z = (
+        rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
+            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z
         )
+        # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
+        rrrs_Q_t_2 = 0.5*rrrs_Q_t
+        rrrs_Q_t_3 = (
+        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
+            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
+            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x
+        )
+        rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
+        rrrs_Q_t_5 = (
+        axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_2
+        )
+        rrrs_Q_t_6 = (
+        axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_2
+        )
+        rrrs_Q_t_7 = (
+        axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_z*rrrs_Q_t_2
+        )
+        rrrs_Q_t_8 = axis_z_rrrs_axes3_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_9 = axis_z_rrrs_axes3_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_10 = axis_z_rrrs_axes3_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_x*rrrs_Q_t_8
+        rrrs_Q_xx = -2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_xy = (
+        axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_6 - axis_y_rrrs_axes3_y*rrrs_Q_t_5
+        )
+        rrrs_Q_xz = (
+        axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_5
+        )
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = -2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_yz = (
+        axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9 -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_6
+        )
+        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_z*rrrs_Q_t_10
+        rrrs_Q_zz = -2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (rrrs-U) velocity and gravity terms of the leg force
-        rrrs_U_in_base_x = (
-        -axis_x_rrrs_axes3_x*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z
+        rrrs_U_x = (
+        -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z
         )
-        rrrs_U_in_base_y = (
-        -axis_x_rrrs_axes3_y*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z
+        rrrs_U_y = (
+        -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z
         )
-        rrrs_U_in_base_z = (
-        -axis_x_rrrs_axes3_z*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z
+        rrrs_U_z = (
+        -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z
         )
+        # (M_ta) coupling block of M
+        rrrs_M_ta_t = -rrrs_Q_xy*rrrs_q_z
+        rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
+        rrrs_M_ta_t_3 = rrrs_M_ta_t + rrrs_M_ta_t_2
+        rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
+        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
+        rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
+        rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
+        rrrs_M_ta_t_8 = rrrs_M_ta_t + rrrs_M_ta_t_7
+        rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
+        rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
+        rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
+        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        # (M_aa) rotational block of M
+        rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y + rrrs_M_ta_t_8*rrrs_q_z
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
         # (Z_a) rotational part of Z
-        rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y - rrrs_U_in_base_y*rrrs_q_in_base_z
-        rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z - rrrs_U_in_base_z*rrrs_q_in_base_x
-        rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x - rrrs_U_in_base_x*rrrs_q_in_base_y
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z
+        rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
+        rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         # (rrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
-        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
-        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
+        rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
+        rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x
         # (rrrs-H_a_2) moment of the column's unit force about the platform origin
-        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
-        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
-        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y
+        rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
+        rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrs_Q_t_12, rrrs_Q_t_13, rrrs_Q_t_14, rrrs_Q_t_16, rrrs_Q_t_17, rrrs_Q_t_19,
-            rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8,
-            rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
-            rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
-            rrrs_U_in_base_x, rrrs_U_in_base_y, rrrs_U_in_base_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
-            rrrs_Z_a_t_3,
+        rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3,
+            rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, -rrrs_M_ta_t_8, rrrs_M_ta_t_9,
+            rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t, rrrs_M_aa_t_2,
+            rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y,
+            rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
         ))
-        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        # (rrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
         out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
         out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
-        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        out_H[_H_rrrs[6][leg]] = rrrs_w_2_x
+        out_H[_H_rrrs[7][leg]] = rrrs_w_2_y
+        out_H[_H_rrrs[8][leg]] = rrrs_w_2_z
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
     (
-    total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
-        total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
-        total_rrrs_yz_2, total_rrrs_zx, total_rrrs_zy, total_rrrs_zz_2, total_rrrs_xx_3,
-        total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
-        total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
+    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
+        M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
+        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
+        Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rrrs_xx
-    M_tt_yy = m_star - total_rrrs_yy
-    M_tt_zz = m_star - total_rrrs_zz
+    M_tt_xx = M_tt_rrrs_xx + m_star
+    M_tt_yy = M_tt_rrrs_yy + m_star
+    M_tt_zz = M_tt_rrrs_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rrrs_xy_2
-    M_ta_xz = total_rrrs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rrrs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rrrs_yz_2
-    M_ta_zx = h_star_in_base_y + total_rrrs_zx
-    M_ta_zy = -h_star_in_base_x - total_rrrs_zy
+    M_ta_xy = M_ta_rrrs_xy + h_star_z
+    M_ta_xz = M_ta_rrrs_xz - h_star_y
+    M_ta_yx = M_ta_rrrs_yx - h_star_z
+    M_ta_yz = M_ta_rrrs_yz + h_star_x
+    M_ta_zx = M_ta_rrrs_zx + h_star_y
+    M_ta_zy = M_ta_rrrs_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rrrs_xx_3
-    M_aa_xy = J_star_t_9 + total_rrrs_xy_3
-    M_aa_xz = J_star_t_10 - total_rrrs_xz_3
-    M_aa_yy = J_star_t_13 - total_rrrs_yy_3
-    M_aa_yz = J_star_t_15 + total_rrrs_yz_3
-    M_aa_zz = J_star_t_17 - total_rrrs_zz_3
+    M_aa_xx = J_star_xx + M_aa_rrrs_xx
+    M_aa_xy = J_star_xy + M_aa_rrrs_xy
+    M_aa_xz = J_star_xz + M_aa_rrrs_xz
+    M_aa_yy = J_star_yy + M_aa_rrrs_yy
+    M_aa_yz = J_star_yz + M_aa_rrrs_yz
+    M_aa_zz = J_star_zz + M_aa_rrrs_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rrrs_x
-    Z_t_y = Z_p_y + total_rrrs_y
-    Z_t_z = Z_p_z + total_rrrs_z
+    Z_t_x = Z_p_x + Z_t_rrrs_x
+    Z_t_y = Z_p_y + Z_t_rrrs_y
+    Z_t_z = Z_p_z + Z_t_rrrs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rrrs_x_2
-    Z_a_y = Z_q_in_base_y + total_rrrs_y_2
-    Z_a_z = Z_q_in_base_z + total_rrrs_z_2
+    Z_a_x = Z_a_rrrs_x + Z_q_x
+    Z_a_y = Z_a_rrrs_y + Z_q_y
+    Z_a_z = Z_a_rrrs_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rrrs_xy
-    out_M[6] = -total_rrrs_xy
-    out_M[2] = -total_rrrs_xz
-    out_M[12] = -total_rrrs_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rrrs_yz
-    out_M[13] = -total_rrrs_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_rrrs_xx_2
-    out_M[18] = total_rrrs_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rrrs_yy_2
-    out_M[25] = -total_rrrs_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_rrrs_zz_2
-    out_M[32] = -total_rrrs_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2139,9 +2233,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2153,8 +2249,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2194,53 +2291,55 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
-            rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t,
-            rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
+            rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
+            rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
+            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
+            rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -2253,273 +2352,279 @@ def _run_M(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-w_3) reciprocal vector 3
-        rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x
+        rrrs_w_3_in_axes3_x = -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y
         # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x
-        rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y
+        rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-D_1_3) inertia of joint 3 along joint 1
-        rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y
+        rrrs_D_1_3 = (
+        rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x + rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y
+        )
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*rrrs_s_3_t
+        rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*rrrs_c_3
+        rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*rrrs_c_3
+        rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*rrrs_s_3_t
+        rrrs_Jc_2_in_axes2_xy = (
+        rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
+        )
+        rrrs_Jc_2_in_axes1_zz = (
+        rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 + rrrs_c_2*(rrrs_J_2_in_spec2_yy +
+            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) + rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t))
+        )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3
-        rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x
-        rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz - rrrs_d_Gamma_3_t_3)
-        # (rrrs-J_3) inertia tensor of link 3 about the connection point
-        rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3
-        rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3
-        rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3
-        rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3
-        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3
+        rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
+        rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
+        rrrs_d_Gamma_3_in_axes3_x = (
+        rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
+        )
         # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz - rrrs_d_Gamma_3_t_3)
-        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrs__y = (
-        -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy + rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3
-            - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 - rrrs_J_3_xx*rrrs_s_3))) -
-            rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx + rrrs__x*rrrs_c_3 +
-            rrrs__x_2*rrrs_s_3))
+        rrrs_d_Gamma_2_in_axes3_x = (
+        rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrrs_d_Gamma_1_z = (
-        inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) + rrrs_e_1_r2_x*rrrs_h_3_y -
-            rrrs_e_1_r2_y*rrrs_h_3_x
+        rrrs_d_Gamma_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
+            rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
         # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_d_G_xz = (
-        rrrs_d_Gamma_3_t_2*rrrs_w_3_t - inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz +
-            rrrs_J_3_yz*rrrs_c_3 - rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz +
-            rrrs_J_3_xz*rrrs_c_3 + rrrs_J_3_yz*rrrs_s_3))
+        rrrs_d_G_in_axes3_xz = (
+        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t))
         )
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrs_d_c_xx = (
-        inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t - inv_rrrs_r_2_r0_y) -
-            rrrs_d_Gamma_3_x*rrrs_w_3_t
+        rrrs_d_c_in_axes3_xx = (
+        rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x + rrrs_w_3_in_axes3_x) -
+            rrrs_d_Gamma_2_in_axes3_x*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x
         )
-        rrrs_d_c_xy = (
-        rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y - rrrs_d_Gamma_3_y*rrrs_w_3_t
+        rrrs_d_c_in_axes3_xy = (
+        rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
-        rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z
-        rrrs_d_c_yz = (
-        rrrs_d_alpha_3_t*rrrs_h_3_z - inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2
+        rrrs_d_c_in_axes3_xz = (
+        -rrrs_d_G_in_axes3_xz - rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        )
+        rrrs_d_c_in_axes3_yz = (
+        rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
+            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
         )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy
-        rrrs_Q_t_2 = 0.5*rrrs_Q_t
-        rrrs_Q_t_3 = (
-        rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z + rrrs_d_alpha_3_t*rrrs_h_3_y -
-            rrrs_d_alpha_3_t_2*rrrs_h_3_x
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_Q_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_Q_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_Q_t*rrrs_base_frame_xy + rrrs_base_frame_xx*rrrs_e_1_in_axes3_y -
+            rrrs_Q_t_2*rrrs_base_frame_xz
         )
+        axis_y_rrrs_axes3_y = (
+        rrrs_Q_t*rrrs_base_frame_yy + rrrs_base_frame_yx*rrrs_e_1_in_axes3_y -
+            rrrs_Q_t_2*rrrs_base_frame_yz
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_Q_t*rrrs_base_frame_zy + rrrs_base_frame_zx*rrrs_e_1_in_axes3_y -
+            rrrs_Q_t_2*rrrs_base_frame_zz
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
-        axis_x_rrrs_axes3_x*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2
+        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
+            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
+            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x
         )
-        rrrs_Q_t_6 = (
-        axis_x_rrrs_axes3_y*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2
-        )
+        rrrs_Q_t_6 = 0.5*rrrs_Q_t_5
         rrrs_Q_t_7 = (
-        axis_x_rrrs_axes3_z*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2
+        axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_4
         )
-        rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_xz
-        rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_xz
-        rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_xz
-        rrrs_Q_t_11 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8
+        rrrs_Q_t_8 = (
+        axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_4
         )
-        rrrs_Q_t_12 = 2.0*rrrs_Q_t_11 + rrrs_d_c_xx
-        rrrs_Q_t_13 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8
+        rrrs_Q_t_9 = (
+        axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_z*rrrs_Q_t_4
         )
-        rrrs_Q_t_14 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8
+        rrrs_Q_t_10 = axis_z_rrrs_axes3_x*rrrs_Q_t_6 - axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_11 = axis_z_rrrs_axes3_y*rrrs_Q_t_6 - axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_12 = axis_z_rrrs_axes3_z*rrrs_Q_t_6 - axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_z_rrrs_axes3_x*rrrs_Q_t_10
+        rrrs_Q_xx = -2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_xy = (
+        axis_z_rrrs_axes3_x*rrrs_Q_t_11 + axis_z_rrrs_axes3_y*rrrs_Q_t_10 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_8 - axis_y_rrrs_axes3_y*rrrs_Q_t_7
         )
-        rrrs_Q_t_15 = (
-        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9
+        rrrs_Q_xz = (
+        axis_z_rrrs_axes3_x*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_10 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_7
         )
-        rrrs_Q_t_16 = 2.0*rrrs_Q_t_15 + rrrs_d_c_xx
-        rrrs_Q_t_17 = (
-        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 -
-            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9
+        rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 - axis_z_rrrs_axes3_y*rrrs_Q_t_11
+        rrrs_Q_yy = -2.0*rrrs_Q_t_14 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_yz = (
+        axis_z_rrrs_axes3_y*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_11 -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_18 = (
-        axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10
-        )
-        rrrs_Q_t_19 = 2.0*rrrs_Q_t_18 + rrrs_d_c_xx
+        rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 - axis_z_rrrs_axes3_z*rrrs_Q_t_12
+        rrrs_Q_zz = -2.0*rrrs_Q_t_15 - rrrs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z
-        rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2
-        rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x
-        rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x
-        rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y
-        rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
-        rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x
-        rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y
-        rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x
+        rrrs_M_ta_t = -rrrs_Q_xy*rrrs_q_z
+        rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
+        rrrs_M_ta_t_3 = rrrs_M_ta_t + rrrs_M_ta_t_2
+        rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
+        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
+        rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
+        rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
+        rrrs_M_ta_t_8 = rrrs_M_ta_t + rrrs_M_ta_t_7
+        rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
+        rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
+        rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
         rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
         # (M_aa) rotational block of M
-        rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_y
-        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y + rrrs_M_ta_t_9*rrrs_q_in_base_z
-        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_x
-        rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x + rrrs_M_ta_t_5*rrrs_q_in_base_z
-        rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y - rrrs_M_ta_t_9*rrrs_q_in_base_x
+        rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y + rrrs_M_ta_t_8*rrrs_q_z
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrs_Q_t_12, rrrs_Q_t_13, rrrs_Q_t_14, rrrs_Q_t_16, rrrs_Q_t_17, rrrs_Q_t_19,
-            rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8,
-            rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
-            rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
+        rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3,
+            rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, -rrrs_M_ta_t_8, rrrs_M_ta_t_9,
+            rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t, rrrs_M_aa_t_2,
+            rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
         ))
     (
-    total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
-        total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
-        total_rrrs_yz_2, total_rrrs_zx, total_rrrs_zy, total_rrrs_zz_2, total_rrrs_xx_3,
-        total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
+    M_tt_rrrs_xx, M_tt_xy, M_tt_xz, M_tt_rrrs_yy, M_tt_yz, M_tt_rrrs_zz, M_ta_xx, M_ta_rrrs_xy,
+        M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_yy, M_ta_rrrs_yz, M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_zz,
+        M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz, M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rrrs_xx
-    M_tt_yy = m_star - total_rrrs_yy
-    M_tt_zz = m_star - total_rrrs_zz
+    M_tt_xx = M_tt_rrrs_xx + m_star
+    M_tt_yy = M_tt_rrrs_yy + m_star
+    M_tt_zz = M_tt_rrrs_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rrrs_xy_2
-    M_ta_xz = total_rrrs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rrrs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rrrs_yz_2
-    M_ta_zx = h_star_in_base_y + total_rrrs_zx
-    M_ta_zy = -h_star_in_base_x - total_rrrs_zy
+    M_ta_xy = M_ta_rrrs_xy + h_star_z
+    M_ta_xz = M_ta_rrrs_xz - h_star_y
+    M_ta_yx = M_ta_rrrs_yx - h_star_z
+    M_ta_yz = M_ta_rrrs_yz + h_star_x
+    M_ta_zx = M_ta_rrrs_zx + h_star_y
+    M_ta_zy = M_ta_rrrs_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rrrs_xx_3
-    M_aa_xy = J_star_t_9 + total_rrrs_xy_3
-    M_aa_xz = J_star_t_10 - total_rrrs_xz_3
-    M_aa_yy = J_star_t_13 - total_rrrs_yy_3
-    M_aa_yz = J_star_t_15 + total_rrrs_yz_3
-    M_aa_zz = J_star_t_17 - total_rrrs_zz_3
+    M_aa_xx = J_star_xx + M_aa_rrrs_xx
+    M_aa_xy = J_star_xy + M_aa_rrrs_xy
+    M_aa_xz = J_star_xz + M_aa_rrrs_xz
+    M_aa_yy = J_star_yy + M_aa_rrrs_yy
+    M_aa_yz = J_star_yz + M_aa_rrrs_yz
+    M_aa_zz = J_star_zz + M_aa_rrrs_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rrrs_xy
-    out_M[6] = -total_rrrs_xy
-    out_M[2] = -total_rrrs_xz
-    out_M[12] = -total_rrrs_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rrrs_yz
-    out_M[13] = -total_rrrs_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_rrrs_xx_2
-    out_M[18] = total_rrrs_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rrrs_yy_2
-    out_M[25] = -total_rrrs_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_rrrs_zz_2
-    out_M[32] = -total_rrrs_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2537,8 +2642,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2591,60 +2697,81 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
-            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+            rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -2657,336 +2784,371 @@ def _run_Z(m, X, V):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
+        rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-u_1) centripetal acceleration of the connection point
         rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
-        # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
-        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
-        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
-        # (rrrs-W_3) centripetal tensor of link 3
-        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
-        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
-        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
-        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
-        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
-        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
-        # (rrrs-u_1) centripetal acceleration of the connection point
-        rrrs_u_1_tip_x = (
+        rrrs_u_1_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
             axis_x_rrrs_axes3_z*rrrs_u_1_z
         )
-        rrrs_u_1_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z
+        rrrs_u_1_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_u_1_x + axis_y_rrrs_axes3_y*rrrs_u_1_y +
+            axis_y_rrrs_axes3_z*rrrs_u_1_z
         )
-        rrrs_u_1_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z
+        rrrs_u_1_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_u_1_x + axis_z_rrrs_axes3_y*rrrs_u_1_y +
+            axis_z_rrrs_axes3_z*rrrs_u_1_z
+        )
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x
-        rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y
-        rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z
-        # (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x
-        rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z
+        rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z
+        # (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
-        rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o
         # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t
-        rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y
+        rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t
+        rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz
+        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o
+        rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
+        rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y
+        rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
         # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        rrrs_alpha_3_o_x = (
-        rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_o_y*rrrs_s_3
+        rrrs_alpha_3_o_in_axes3_x = (
+        rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+            rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
         )
-        rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 - rrrs_zeta_3_y
-        rrrs_alpha_3_o_z = (
-        inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y + rrrs_qdd_2_o*rrrs_r_2_r0_x) -
-            rrrs_qdd_2_o
+        rrrs_alpha_3_o_in_axes3_y = (
+        rrrs_alpha_2_o_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_o_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
+        )
+        rrrs_alpha_3_o_in_axes3_z = (
+        rrrs_qdd_2_o + rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y -
+            rrrs_qdd_2_o*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-B_3_o) remainder of the acceleration tensor of link 3
-        rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z
-        rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y
-        rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z
-        rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x
-        rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y
-        rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x
+        rrrs_B_3_o_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z
+        rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y
+        rrrs_B_3_o_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z
+        rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
+        rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
+        rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
         # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_o_x = (
-        rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        rrrs_acc_3_o_in_axes3_x = (
+        rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_y = (
-        rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
+        rrrs_acc_3_o_in_axes3_y = (
+        rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+            axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_z = (
-        rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
+        rrrs_acc_3_o_in_axes3_z = (
+        rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+            axis_z_rrrs_axes3_z*gravity_z
         )
         # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_o_x = (
-        rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
-            rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y - rrrs_B_3_o_yz*rrrs_Sigma_3_zz -
-            rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z
+        rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_o_in_axes3_x = (
+        rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
+            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z
         )
-        rrrs_mu_3_o_y = (
-        rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy + rrrs_acc_3_o_x*rrrs_h_3_z -
-            rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
-            rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x
+        rrrs_mu_3_o_in_axes3_y = (
+        rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
         )
-        rrrs_mu_3_o_z = (
-        rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
-            rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x - rrrs_B_3_o_xy*rrrs_Sigma_3_yy -
-            rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y
+        rrrs_mu_3_o_in_axes3_z = (
+        rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
-        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
-        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
-        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
-        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
-        rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o
-        rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o
-        rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y
-        rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x
         # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_o_x = (
-        rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
-            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_o_zx*rrrs_J_2_xy -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y
+        rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_mu_2_o_in_axes2_x = (
+        rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
         )
-        rrrs_mu_2_o_y = (
-        rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_o_xy*rrrs_J_2_yz -
-            rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        rrrs_mu_2_o_in_axes2_y = (
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
+            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
-        rrrs_mu_2_o_z = (
-        rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
-            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_o_t
-            - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        rrrs_mu_2_o_in_axes2_z = (
+        rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
+            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+            rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3
-        rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3
-        rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z
+        rrrs_N_2_o_in_axes2_x = (
+        rrrs_mu_2_o_in_axes2_x + rrrs_c_3*rrrs_mu_3_o_in_axes3_x +
+            rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t
+        )
+        rrrs_N_2_o_in_axes2_y = (
+        rrrs_mu_2_o_in_axes2_y + rrrs_c_3*rrrs_mu_3_o_in_axes3_y -
+            rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t
+        )
+        rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
         # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        rrrs_mu_1_o_in_axes1_z = (
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        )
         # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2
+        rrrs_N_1_o_in_axes1_z = (
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2 + rrrs_N_2_o_in_axes2_y*rrrs_c_2
+        )
         # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z
+        rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrs_c_o_x = (
-        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x -
-            rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y - rrrs_B_3_o_xz*rrrs_h_3_z
+        rrrs_c_o_in_axes3_x = (
+        rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
+            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_o_y = (
-        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t - rrrs_B_3_o_yx*rrrs_h_3_x -
-            rrrs_B_3_o_yz*rrrs_h_3_z
+        rrrs_c_o_in_axes3_y = (
+        rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
+            rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_o_z = (
-        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_o_z -
-            rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y
+        rrrs_c_o_in_axes3_z = (
+        rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
+            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-U) velocity and gravity terms of the leg force
-        rrrs_U_in_base_x = (
-        -axis_x_rrrs_axes3_x*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z
+        rrrs_U_x = (
+        -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z
         )
-        rrrs_U_in_base_y = (
-        -axis_x_rrrs_axes3_y*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z
+        rrrs_U_y = (
+        -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z
         )
-        rrrs_U_in_base_z = (
-        -axis_x_rrrs_axes3_z*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z
+        rrrs_U_z = (
+        -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z
         )
         # (Z_a) rotational part of Z
-        rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y - rrrs_U_in_base_y*rrrs_q_in_base_z
-        rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z - rrrs_U_in_base_z*rrrs_q_in_base_x
-        rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x - rrrs_U_in_base_x*rrrs_q_in_base_y
+        rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z
+        rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
+        rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrs_U_in_base_x, rrrs_U_in_base_y, rrrs_U_in_base_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
-            rrrs_Z_a_t_3,
+        rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
         ))
-    (
-    total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
-    ) = sums
+    Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rrrs_x
-    Z_t_y = Z_p_y + total_rrrs_y
-    Z_t_z = Z_p_z + total_rrrs_z
+    Z_t_x = Z_p_x + Z_t_rrrs_x
+    Z_t_y = Z_p_y + Z_t_rrrs_y
+    Z_t_z = Z_p_z + Z_t_rrrs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rrrs_x_2
-    Z_a_y = Z_q_in_base_y + total_rrrs_y_2
-    Z_a_z = Z_q_in_base_z + total_rrrs_z_2
+    Z_a_x = Z_a_rrrs_x + Z_q_x
+    Z_a_y = Z_a_rrrs_y + Z_q_y
+    Z_a_z = Z_a_rrrs_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -3045,18 +3207,18 @@ def _run_H(m, X):
             rrrs_size, rrrs_size_t_3,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -3069,119 +3231,122 @@ def _run_H(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_y = (
+        rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y)
+        )
+        rrrs_w_2_y = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z)
+        )
+        rrrs_w_2_z = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
+        )
         # (rrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
-        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
-        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
-        )
-        rrrs_w_2_t_2 = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
-        )
-        rrrs_w_2_t_3 = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
-        )
+        rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
+        rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
+        rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x
         # (rrrs-H_a_2) moment of the column's unit force about the platform origin
-        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
-        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
-        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y
+        rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
+        rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
-        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        # (rrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
         out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
         out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
-        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        out_H[_H_rrrs[6][leg]] = rrrs_w_2_x
+        out_H[_H_rrrs[7][leg]] = rrrs_w_2_y
+        out_H[_H_rrrs[8][leg]] = rrrs_w_2_z
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
@@ -3193,8 +3358,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3260,92 +3426,108 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
-            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+            rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -3358,365 +3540,393 @@ def _run_required(m, X, V, A):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
-        # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
-        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
-        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
-        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
-        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
-        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
-        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
-        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
-        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
-        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
-        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
-        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
-        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
-        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
-        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
-        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
-        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
-        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
-        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
-        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
+        rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
         rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
-        rrrs_S_ddot_tip_x = (
+        rrrs_S_ddot_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
             axis_x_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        rrrs_S_ddot_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
+        rrrs_S_ddot_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        rrrs_S_ddot_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
+        rrrs_S_ddot_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_ddot_z
+        )
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x
-        rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y
-        rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z
+        rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z
         # (rrrs-qdd_1) acceleration of joint 1
-        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
-        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
-        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_x = (
-        rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
-            axis_x_rrrs_axes3_z*gravity_z
-        )
-        rrrs_acc_3_y = (
-        rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
-        )
-        rrrs_acc_3_z = (
-        rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
-        )
+        rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2) acceleration of joint 2
+        rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
-        rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1
         # (rrrs-alpha_2) angular acceleration of link 2
-        rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t
-        rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y
+        rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t
+        rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz
+        # (rrrs-B_2) acceleration tensor of link 2
+        rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2
+        rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2
+        rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y
+        rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
-        rrrs_alpha_3_x = (
-        rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_y*rrrs_s_3
+        rrrs_alpha_3_in_axes3_x = (
+        rrrs_alpha_2_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+            rrrs_alpha_2_in_axes2_y*rrrs_s_3_t
         )
-        rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 - rrrs_zeta_3_y
-        rrrs_alpha_3_z = (
-        inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2
+        rrrs_alpha_3_in_axes3_y = (
+        rrrs_alpha_2_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
+        )
+        rrrs_alpha_3_in_axes3_z = (
+        rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-B_3) acceleration tensor of link 3
-        rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z
-        rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y
-        rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z
-        rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x
-        rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y
-        rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x
+        rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z
+        rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y
+        rrrs_B_3_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z
+        rrrs_B_3_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x
+        rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y
+        rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_in_axes3_x = (
+        rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_in_axes3_y = (
+        rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+            axis_y_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_in_axes3_z = (
+        rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+            axis_z_rrrs_axes3_z*gravity_z
+        )
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_x = (
-        rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
-            rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y - rrrs_B_3_yz*rrrs_Sigma_3_zz -
-            rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z
+        rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_in_axes3_x = (
+        rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz + rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy
+            + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+            rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z
         )
-        rrrs_mu_3_y = (
-        rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy + rrrs_acc_3_x*rrrs_h_3_z -
-            rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
-            rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x
+        rrrs_mu_3_in_axes3_y = (
+        rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz + rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy
+            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
+            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
         )
-        rrrs_mu_3_z = (
-        rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
-            rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x - rrrs_B_3_xy*rrrs_Sigma_3_yy -
-            rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y
+        rrrs_mu_3_in_axes3_z = (
+        rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz + rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx
+            + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+            rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-B_2) acceleration tensor of link 2
-        rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2
-        rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2
-        rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y
-        rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_x = (
-        rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
-            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_zx*rrrs_J_2_xy -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y
+        rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_mu_2_in_axes2_x = (
+        rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
+            + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
         )
-        rrrs_mu_2_y = (
-        rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_xy*rrrs_J_2_yz -
-            rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        rrrs_mu_2_in_axes2_y = (
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
-        rrrs_mu_2_z = (
-        rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
-            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_t -
-            rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        rrrs_mu_2_in_axes2_z = (
+        rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
+            - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3
-        rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3
-        rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z
+        rrrs_N_2_in_axes2_x = (
+        rrrs_mu_2_in_axes2_x + rrrs_c_3*rrrs_mu_3_in_axes3_x + rrrs_mu_3_in_axes3_y*rrrs_s_3_t
+        )
+        rrrs_N_2_in_axes2_y = (
+        rrrs_mu_2_in_axes2_y + rrrs_c_3*rrrs_mu_3_in_axes3_y - rrrs_mu_3_in_axes3_x*rrrs_s_3_t
+        )
+        rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        rrrs_mu_1_in_axes1_z = (
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        )
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2
+        rrrs_N_1_in_axes1_z = (
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
+        )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z
+        rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_in_axes3_x = (
+        rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
+            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
+        )
+        rrrs_c_in_axes3_y = (
+        rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) - rrrs_G_in_axes3_y -
+            rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        )
+        rrrs_c_in_axes3_z = (
+        rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
+            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
+            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
+        )
         rrrs_c_x = (
-        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x -
-            rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y - rrrs_B_3_xz*rrrs_h_3_z
+        axis_x_rrrs_axes3_x*rrrs_c_in_axes3_x + axis_y_rrrs_axes3_x*rrrs_c_in_axes3_y +
+            axis_z_rrrs_axes3_x*rrrs_c_in_axes3_z
         )
         rrrs_c_y = (
-        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t - rrrs_B_3_yx*rrrs_h_3_x -
-            rrrs_B_3_yz*rrrs_h_3_z
+        axis_x_rrrs_axes3_y*rrrs_c_in_axes3_x + axis_y_rrrs_axes3_y*rrrs_c_in_axes3_y +
+            axis_z_rrrs_axes3_y*rrrs_c_in_axes3_z
         )
         rrrs_c_z = (
-        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
-            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y
-        )
-        rrrs_c_in_base_x = (
-        axis_x_rrrs_axes3_x*rrrs_c_x + axis_y_rrrs_axes3_in_base_x*rrrs_c_y +
-            axis_z_rrrs_axes3_in_base_x*rrrs_c_z
-        )
-        rrrs_c_in_base_y = (
-        axis_x_rrrs_axes3_y*rrrs_c_x + axis_y_rrrs_axes3_in_base_y*rrrs_c_y +
-            axis_z_rrrs_axes3_in_base_y*rrrs_c_z
-        )
-        rrrs_c_in_base_z = (
-        axis_x_rrrs_axes3_z*rrrs_c_x + axis_y_rrrs_axes3_in_base_z*rrrs_c_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_c_z
+        axis_x_rrrs_axes3_z*rrrs_c_in_axes3_x + axis_y_rrrs_axes3_z*rrrs_c_in_axes3_y +
+            axis_z_rrrs_axes3_z*rrrs_c_in_axes3_z
         )
         # (R_a) moment that actuators and external wrench must give
-        rrrs_R_a_t = rrrs_c_in_base_z*rrrs_q_in_base_y - rrrs_c_in_base_y*rrrs_q_in_base_z
-        rrrs_R_a_t_2 = rrrs_c_in_base_x*rrrs_q_in_base_z - rrrs_c_in_base_z*rrrs_q_in_base_x
-        rrrs_R_a_t_3 = rrrs_c_in_base_y*rrrs_q_in_base_x - rrrs_c_in_base_x*rrrs_q_in_base_y
+        rrrs_R_a_t = rrrs_c_y*rrrs_q_z - rrrs_c_z*rrrs_q_y
+        rrrs_R_a_t_2 = rrrs_c_z*rrrs_q_x - rrrs_c_x*rrrs_q_z
+        rrrs_R_a_t_3 = rrrs_c_x*rrrs_q_y - rrrs_c_y*rrrs_q_x
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
+        rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
+        rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y
+        rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
+        rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrs_c_in_base_x, rrrs_c_in_base_y, rrrs_c_in_base_z, rrrs_R_a_t, rrrs_R_a_t_2,
-            rrrs_R_a_t_3,
+        rrrs_c_x, rrrs_c_y, rrrs_c_z, rrrs_R_a_t, rrrs_R_a_t_2, rrrs_R_a_t_3,
         ))
-        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        # (rrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
         out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
         out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
-        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        out_H[_H_rrrs[6][leg]] = rrrs_w_2_x
+        out_H[_H_rrrs[7][leg]] = rrrs_w_2_y
+        out_H[_H_rrrs[8][leg]] = rrrs_w_2_z
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
-    (
-    total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
-    ) = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_rrrs_x, R_a_rrrs_y, R_a_rrrs_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rrrs_x
-    R_t_y = f_p_y - total_rrrs_y
-    R_t_z = f_p_z - total_rrrs_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_rrrs_x_2
-    R_a_y = mu_p_in_base_y - total_rrrs_y_2
-    R_a_z = mu_p_in_base_z - total_rrrs_z_2
+    R_a_x = R_a_rrrs_x + mu_p_x
+    R_a_y = R_a_rrrs_y + mu_p_y
+    R_a_z = R_a_rrrs_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -3800,51 +4010,54 @@ def _run_inverse_kinematics(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-q_1) displacement of joint 1
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_q_1 = (
+        atan2(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1, inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1)
+        )
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        # (rrrs-q_1) displacement of joint 1
-        rrrs_q_1 = (
-        atan2(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1, inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1)
-        )
         # (rrrs-q_2) displacement of joint 2
+        rrrs_q_2_t = -1.0/rrrs_rho2_2
         rrrs_q_2 = (
-        atan2(inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2),
-            -inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2))
+        atan2(-rrrs_q_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2),
+            rrrs_q_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2))
+        )
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-q_3) displacement of joint 3
         rrrs_q_3 = (
         atan2(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2,
-            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x)
+            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x)
         )
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
         )
+        # (rrrs-q_1) displacement of joint 1
         out_q[_q_rrrs[0][leg]] = rrrs_q_1
+        # (rrrs-q_2) displacement of joint 2
         out_q[_q_rrrs[1][leg]] = rrrs_q_2
+        # (rrrs-q_3) displacement of joint 3
         out_q[_q_rrrs[2][leg]] = rrrs_q_3
     return ok, (out_q,)
 
@@ -3905,27 +4118,27 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
-            rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-            rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -3938,107 +4151,110 @@ def _run_joint_rates(m, X, V):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
-        # (rrrs-qd_3) rate of joint 3
-        rrrs_qd_2 = (
-        (rrrs_S_dot_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y) +
-            rrrs_S_dot_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z) +
-            rrrs_S_dot_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/rrrs_r_2_r0_y
+        rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
-        rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*(rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3))
-        )
+        # (rrrs-qd_1) rate of joint 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
         rrrs_qd_1 = (
-        (axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)/rrrs_v_1_z
+        (axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)/rrrs_v_1_in_axes3_z
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        )
+        rrrs_qd_2 = (
+        -(rrrs_S_dot_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y) +
+            rrrs_S_dot_y*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z) +
+            rrrs_S_dot_z*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x))/rrrs_r_2_in_axes3_y
+        )
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_3 = (
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*(rrrs_c_3*rrrs_r_2_in_axes2_x +
+            rrrs_r_2_t*rrrs_s_3_t))
         )
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
+        # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
-        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2
+        # (rrrs-qd_2) rate of joint 2
+        out_qd[_qd_rrrs[1][leg]] = rrrs_qd_2
+        # (rrrs-qd_3) rate of joint 3
         out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
@@ -4112,27 +4328,27 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
-            rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-            rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -4145,190 +4361,199 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_omega_2_r0_x*rrrs_qd_3
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
         rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
+        )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrs_rel_x = (
+        rrrs_rel_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_x
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_x
         )
-        rrrs_rel_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z - rrrs_bias_y
+        rrrs_rel_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_y
         )
-        rrrs_rel_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z - rrrs_bias_z
+        rrrs_rel_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_z
         )
         # (rrrs-qdd_1) acceleration of joint 1
-        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
-        rrrs_qdd_3 = inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x)
-        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
+        rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2) acceleration of joint 2
+        rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
+        # (rrrs-qdd_3) acceleration of joint 3
+        rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
+        # (rrrs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrrs[0][leg]] = rrrs_qdd_1
-        out_qdd[_qdd_rrrs[1][leg]] = -rrrs_qdd_2
+        # (rrrs-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_rrrs[1][leg]] = rrrs_qdd_2
+        # (rrrs-qdd_3) acceleration of joint 3
         out_qdd[_qdd_rrrs[2][leg]] = rrrs_qdd_3
     return ok, (out_qdd,)
 
@@ -4404,32 +4629,34 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
-            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+            rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -4442,336 +4669,364 @@ def _run_legs(m, X, V, A):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
-        # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
-        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
-        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
-        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
-        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
-        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
-        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
-        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
-        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
-        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
-        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
-        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
-        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
+        rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
         rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
-        rrrs_S_ddot_tip_x = (
+        rrrs_S_ddot_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
             axis_x_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        rrrs_S_ddot_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
+        rrrs_S_ddot_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        rrrs_S_ddot_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
+        rrrs_S_ddot_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_ddot_z
+        )
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x
-        rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y
-        rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z
+        rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z
         # (rrrs-qdd_1) acceleration of joint 1
-        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
-        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
-        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_x = (
-        rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
-            axis_x_rrrs_axes3_z*gravity_z
-        )
-        rrrs_acc_3_y = (
-        rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
-        )
-        rrrs_acc_3_z = (
-        rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
-        )
+        rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2) acceleration of joint 2
+        rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
-        rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1
         # (rrrs-alpha_2) angular acceleration of link 2
-        rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t
-        rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y
+        rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t
+        rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz
+        # (rrrs-B_2) acceleration tensor of link 2
+        rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2
+        rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2
+        rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y
+        rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
-        rrrs_alpha_3_x = (
-        rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_y*rrrs_s_3
+        rrrs_alpha_3_in_axes3_x = (
+        rrrs_alpha_2_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+            rrrs_alpha_2_in_axes2_y*rrrs_s_3_t
         )
-        rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 - rrrs_zeta_3_y
-        rrrs_alpha_3_z = (
-        inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2
+        rrrs_alpha_3_in_axes3_y = (
+        rrrs_alpha_2_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
+        )
+        rrrs_alpha_3_in_axes3_z = (
+        rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-B_3) acceleration tensor of link 3
-        rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z
-        rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y
-        rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z
-        rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x
-        rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y
-        rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x
+        rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z
+        rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y
+        rrrs_B_3_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z
+        rrrs_B_3_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x
+        rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y
+        rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_in_axes3_x = (
+        rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_in_axes3_y = (
+        rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+            axis_y_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_in_axes3_z = (
+        rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+            axis_z_rrrs_axes3_z*gravity_z
+        )
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_x = (
-        rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
-            rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y - rrrs_B_3_yz*rrrs_Sigma_3_zz -
-            rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z
+        rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_in_axes3_x = (
+        rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz + rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy
+            + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+            rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z
         )
-        rrrs_mu_3_y = (
-        rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy + rrrs_acc_3_x*rrrs_h_3_z -
-            rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
-            rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x
+        rrrs_mu_3_in_axes3_y = (
+        rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz + rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy
+            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
+            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
         )
-        rrrs_mu_3_z = (
-        rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
-            rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x - rrrs_B_3_xy*rrrs_Sigma_3_yy -
-            rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y
+        rrrs_mu_3_in_axes3_z = (
+        rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz + rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx
+            + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+            rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-B_2) acceleration tensor of link 2
-        rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2
-        rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2
-        rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y
-        rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_x = (
-        rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
-            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_zx*rrrs_J_2_xy -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y
+        rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_mu_2_in_axes2_x = (
+        rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
+            + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
         )
-        rrrs_mu_2_y = (
-        rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_xy*rrrs_J_2_yz -
-            rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        rrrs_mu_2_in_axes2_y = (
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
-        rrrs_mu_2_z = (
-        rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
-            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_t -
-            rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        rrrs_mu_2_in_axes2_z = (
+        rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
+            - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3
-        rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3
-        rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z
+        rrrs_N_2_in_axes2_x = (
+        rrrs_mu_2_in_axes2_x + rrrs_c_3*rrrs_mu_3_in_axes3_x + rrrs_mu_3_in_axes3_y*rrrs_s_3_t
+        )
+        rrrs_N_2_in_axes2_y = (
+        rrrs_mu_2_in_axes2_y + rrrs_c_3*rrrs_mu_3_in_axes3_y - rrrs_mu_3_in_axes3_x*rrrs_s_3_t
+        )
+        rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        rrrs_mu_1_in_axes1_z = (
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        )
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2
+        rrrs_N_1_in_axes1_z = (
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
+        )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z
+        rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
-        rrrs_c_x = (
-        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x -
-            rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y - rrrs_B_3_xz*rrrs_h_3_z
+        rrrs_c_in_axes3_x = (
+        rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
+            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_y = (
-        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t - rrrs_B_3_yx*rrrs_h_3_x -
-            rrrs_B_3_yz*rrrs_h_3_z
+        rrrs_c_in_axes3_y = (
+        rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) - rrrs_G_in_axes3_y -
+            rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_z = (
-        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
-            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y
+        rrrs_c_in_axes3_z = (
+        rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
+            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
+            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
-        rrrs_c_true_x = rrrs_c_x - rrrs_acc_3_x*rrrs_link3_mass
-        rrrs_c_true_y = rrrs_c_y - rrrs_acc_3_y*rrrs_link3_mass
-        rrrs_c_true_z = rrrs_c_z - rrrs_acc_3_z*rrrs_link3_mass
-        rrrs_c_true_in_base_x = (
-        axis_x_rrrs_axes3_x*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_x*rrrs_c_true_y +
-            axis_z_rrrs_axes3_in_base_x*rrrs_c_true_z
+        rrrs_c_true_in_axes3_x = rrrs_c_in_axes3_x - rrrs_acc_3_in_axes3_x*rrrs_link3_mass
+        rrrs_c_true_in_axes3_y = rrrs_c_in_axes3_y - rrrs_acc_3_in_axes3_y*rrrs_link3_mass
+        rrrs_c_true_in_axes3_z = rrrs_c_in_axes3_z - rrrs_acc_3_in_axes3_z*rrrs_link3_mass
+        rrrs_c_true_x = (
+        axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x + axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z
         )
-        rrrs_c_true_in_base_y = (
-        axis_x_rrrs_axes3_y*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_y*rrrs_c_true_y +
-            axis_z_rrrs_axes3_in_base_y*rrrs_c_true_z
+        rrrs_c_true_y = (
+        axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x + axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z
         )
-        rrrs_c_true_in_base_z = (
-        axis_x_rrrs_axes3_z*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_z*rrrs_c_true_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_c_true_z
+        rrrs_c_true_z = (
+        axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x + axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z
         )
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
-        out_leg_force[_leg_force_rrrs[0][leg]] = rrrs_c_true_in_base_x
-        out_leg_force[_leg_force_rrrs[1][leg]] = rrrs_c_true_in_base_y
-        out_leg_force[_leg_force_rrrs[2][leg]] = rrrs_c_true_in_base_z
-        out_drive[_drive_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_drive[_drive_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_drive[_drive_rrrs[2][leg]] = rrrs_w_1_t_5
-        out_drive[_drive_rrrs[3][leg]] = -rrrs_w_2_t
-        out_drive[_drive_rrrs[4][leg]] = -rrrs_w_2_t_2
-        out_drive[_drive_rrrs[5][leg]] = -rrrs_w_2_t_3
+        # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rrrs[0][leg]] = rrrs_c_true_x
+        out_leg_force[_leg_force_rrrs[1][leg]] = rrrs_c_true_y
+        out_leg_force[_leg_force_rrrs[2][leg]] = rrrs_c_true_z
+        # (rrrs-w_1) reciprocal vector 1
+        out_drive[_drive_rrrs[0][leg]] = rrrs_w_1_x
+        out_drive[_drive_rrrs[1][leg]] = rrrs_w_1_y
+        out_drive[_drive_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        out_drive[_drive_rrrs[3][leg]] = rrrs_w_2_x
+        out_drive[_drive_rrrs[4][leg]] = rrrs_w_2_y
+        out_drive[_drive_rrrs[5][leg]] = rrrs_w_2_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4779,7 +5034,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4819,23 +5077,25 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_b_r0_x, rrrs_b_r0_y,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_x,
-            rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y,
-            rrrs_h_3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass,
-            rrrs_link2_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2,
-            rrrs_rho2_2_t, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+            rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_3_in_spec3_x,
+            rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_potential_t_3,
+            rrrs_potential_t_4, rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
         # (rrrs-S) from the base point to the connection point
         rrrs_S_x = (
@@ -4862,71 +5122,75 @@ def _run_potential(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (potential) potential energy
-        rrrs_b_r1_x = rrrs_b_r0_y*rrrs_s_1 - rrrs_b_r0_x*rrrs_c_1
-        rrrs_b_r1_y = -rrrs_b_r0_x*rrrs_s_1 - rrrs_b_r0_y*rrrs_c_1
-        # (rrrs-h_3) first moment of link 3 about the connection point
-        rrrs_h_3_r0_x = rrrs_c_3*rrrs_h_3_x + rrrs_h_3_y*rrrs_s_3
-        rrrs_h_3_r0_y = rrrs_c_3*rrrs_h_3_y - rrrs_h_3_x*rrrs_s_3
-        # (potential) potential energy
-        rrrs_potential_t_3 = (
-        (-rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1)*(rrrs_b_r1_y*rrrs_link1_mass +
-            rrrs_b_r1_y*rrrs_link2_mass + rrrs_h_2_y*rrrs_s_2 + rrrs_h_3_r0_y*rrrs_s_2 -
-            rrrs_h_1_y - rrrs_c_2*rrrs_h_2_x - rrrs_c_2*rrrs_h_3_r0_x)
+        rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1
+        rrrs_b_in_spec1_y = rrrs_potential_t*rrrs_s_1 - rrrs_c_1*rrrs_potential_t_2
+        rrrs_potential_t_5 = rrrs_c_3*rrrs_h_3_in_spec3_x + rrrs_h_3_in_spec3_y*rrrs_s_3_t
+        rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y - rrrs_h_3_in_spec3_x*rrrs_s_3_t
+        rrrs_potential_t_7 = (
+        (rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1)*(rrrs_c_2*rrrs_h_2_in_spec2_x +
+            rrrs_c_2*rrrs_potential_t_5 - rrrs_h_1_in_spec1_y - rrrs_b_in_spec1_y*rrrs_link1_mass
+            - rrrs_b_in_spec1_y*rrrs_link2_mass - rrrs_h_2_in_spec2_y*rrrs_s_2 -
+            rrrs_potential_t_6*rrrs_s_2)
         )
-        rrrs_potential_t_4 = (
-        rrrs_potential_t_3 + rrrs_g_r0_z*(rrrs_h_1_x + rrrs_potential_t + rrrs_potential_t_2 -
-            rrrs_c_2*rrrs_h_2_y - rrrs_c_2*rrrs_h_3_r0_y - rrrs_h_2_x*rrrs_s_2 -
-            rrrs_h_3_r0_x*rrrs_s_2) + (rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x)*(rrrs_h_1_z +
-            rrrs_h_2_z + rrrs_h_3_z + rrrs_b_r1_x*rrrs_link1_mass + rrrs_b_r1_x*rrrs_link2_mass)
+        rrrs_potential_t_8 = (
+        rrrs_potential_t_7 + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x + rrrs_potential_t_3 +
+            rrrs_potential_t_4 + rrrs_c_2*rrrs_h_2_in_spec2_y + rrrs_c_2*rrrs_potential_t_6 +
+            rrrs_h_2_in_spec2_x*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t +
+            rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
+            rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
+            rrrs_b_in_spec1_z*rrrs_link2_mass)
         )
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
         )
         sums = m.added(sums, leg, (
-        rrrs_potential_t_4,
+        rrrs_potential_t_8,
         ))
-    total_rrrs, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_rrrs
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4936,7 +5200,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4979,11 +5243,12 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrrs_rho2_2_t_4, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
+        inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
             rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
             rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
             rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
@@ -4993,18 +5258,18 @@ def _run_condition(m, X):
             rrrs_size, rrrs_size_t_3,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -5017,151 +5282,154 @@ def _run_condition(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_y = (
+        rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y)
+        )
+        rrrs_w_2_y = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z)
+        )
+        rrrs_w_2_z = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
+        )
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_pivot_size = abs(rrrs_rho2_1)
+        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
+        rrrs_pivot_size_3 = abs(rrrs_v_1_in_axes3_z)
+        rrrs_pivot_size_4 = abs(rrrs_r_2_in_axes3_y)
+        rrrs_least_pivots = (
+        least(least(least(sqrt(inv_rrrs_rho2_2_t*rrrs_pivot_size_2),
+            inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
+            sqrt(inv_rrrs_size_t_3*rrrs_pivot_size))
+        )
         # (rrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
-        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
-        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
-        )
-        rrrs_w_2_t_2 = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
-        )
-        rrrs_w_2_t_3 = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
-        )
+        rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
+        rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
+        rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x
         # (rrrs-H_a_2) moment of the column's unit force about the platform origin
-        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
-        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
-        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y
+        rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
+        rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         # (spread) rms distance of the platform points from their centroid
-        rrrs_spread_t = b_c_x - rrrs_platform_point_x
-        rrrs_spread_t_2 = b_c_y - rrrs_platform_point_y
-        rrrs_spread_t_3 = b_c_z - rrrs_platform_point_z
+        rrrs_spread_t = b_c_in_platform_x - rrrs_platform_point_x
+        rrrs_spread_t_2 = b_c_in_platform_y - rrrs_platform_point_y
+        rrrs_spread_t_3 = b_c_in_platform_z - rrrs_platform_point_z
         rrrs_spread_t_4 = (
         rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2 +
             rrrs_spread_t_3*rrrs_spread_t_3
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_pivot_size = abs(rrrs_rho2_1)
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_pivot_size_3 = abs(rrrs_v_1_z)
-        rrrs_pivot_size_4 = abs(rrrs_r_2_r0_y)
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_least_pivots = (
-        least(least(least(sqrt(inv_rrrs_rho2_2_t_4*rrrs_pivot_size_2),
-            inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
-            sqrt(inv_rrrs_size_t_3*rrrs_pivot_size))
-        )
         clear = (
         clear & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_z) >
-            _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE * rrrs_size))
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) &
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         reached = reached & m.every(leg, (rrrs_disc_2 >= 0.0))
         sums = m.added(sums, leg, (
         rrrs_spread_t_4,
         ))
-        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        # (rrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
         out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
         out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
-        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        out_H[_H_rrrs[6][leg]] = rrrs_w_2_x
+        out_H[_H_rrrs[7][leg]] = rrrs_w_2_y
+        out_H[_H_rrrs[8][leg]] = rrrs_w_2_z
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
         out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
-    total_rrrs, = sums
+    spread_rrrs, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_rrrs)
+    spread = sqrt(spread_rrrs)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

@@ -534,7 +534,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -799,110 +799,174 @@ def _prepare(p):
         rrrrs_size_t_2
     )
     rrrrs_size = sqrt(rrrrs_size_t_3)
-    # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-    rrrrs_Kd_3_t = 0.5*rrrrs_size_t
-    rrrrs_Kd_3_t_2 = 0.5*rrrrs_size_t_2
-    # (rrrrs-rho2_3) squared amplitude
-    rrrrs_rho2_3_t = rrrrs_size*rrrrs_size*rrrrs_size_t_3
-    # (rrrrs-xi_3) the vector from joint 3 to the connection point, resolved along link 3
-    inv_rrrrs_size_t_2 = 1.0/rrrrs_size_t
-    # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-    inv_rrrrs_size_t_3 = 1.0/rrrrs_size_t_2
-    # (rrrrs-rho_tip_4) connection point to the centre of mass of link 4
-    rrrrs_rho_tip_4_x = rrrrs_link4_centre_of_mass_x - rrrrs_platform_joint_offset_x
-    # (rrrrs-h_4) first moment of link 4 about the connection point
-    rrrrs_h_4_x = rrrrs_link4_mass*rrrrs_rho_tip_4_x
-    rrrrs_h_4_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
-    rrrrs_h_4_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
-    # (rrrrs-w_4) reciprocal vector 3
-    inv_rrrrs_platform_joint_offset_x = 1.0/rrrrs_platform_joint_offset_x
-    # (rrrrs-d_phi_4) coefficient of the acceleration in: inertia force of link 4 from its turning about its reference point
-    rrrrs_d_phi_4_t = inv_rrrrs_platform_joint_offset_x*rrrrs_h_4_y
-    # (rrrrs-J_4) inertia tensor of link 4 about the connection point
-    rrrrs_J_4_t = rrrrs_rho_tip_4_x*rrrrs_rho_tip_4_x
-    rrrrs_J_4_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y
-    rrrrs_J_4_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z
-    rrrrs_J_4_t_4 = rrrrs_J_4_t + rrrrs_J_4_t_2 + rrrrs_J_4_t_3
-    rrrrs_J_4_xx = rrrrs_link4_inertia_xx - rrrrs_link4_mass*(rrrrs_J_4_t - rrrrs_J_4_t_4)
-    rrrrs_J_4_xy = (
-    rrrrs_link4_inertia_xy - rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass*rrrrs_rho_tip_4_x
-    )
-    rrrrs_J_4_xz = (
-    rrrrs_link4_inertia_xz - rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass*rrrrs_rho_tip_4_x
-    )
-    rrrrs_J_4_yy = rrrrs_link4_inertia_yy - rrrrs_link4_mass*(rrrrs_J_4_t_2 - rrrrs_J_4_t_4)
-    rrrrs_J_4_yz = (
-    rrrrs_link4_inertia_yz -
-        rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
-    )
-    rrrrs_J_4_zz = rrrrs_link4_inertia_zz - rrrrs_link4_mass*(rrrrs_J_4_t_3 - rrrrs_J_4_t_4)
-    # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    rrrrs_d_Gamma_4_t = inv_rrrrs_platform_joint_offset_x*rrrrs_J_4_zz
-    rrrrs_d_Gamma_4_y = rrrrs_d_Gamma_4_t + rrrrs_h_4_x
-    # (rrrrs-J_3) inertia tensor of link 3 about the origin of link 3
-    rrrrs_J_3_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x
-    rrrrs_J_3_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y
-    rrrrs_J_3_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z
-    rrrrs_J_3_t_4 = rrrrs_J_3_t + rrrrs_J_3_t_2 + rrrrs_J_3_t_3
-    rrrrs_J_3_xx = rrrrs_link3_inertia_xx - rrrrs_link3_mass*(rrrrs_J_3_t - rrrrs_J_3_t_4)
-    rrrrs_J_3_xy = (
-    rrrrs_link3_inertia_xy -
-        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
-    )
-    rrrrs_J_3_xz = (
-    rrrrs_link3_inertia_xz -
-        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
-    )
-    rrrrs_J_3_yy = rrrrs_link3_inertia_yy - rrrrs_link3_mass*(rrrrs_J_3_t_2 - rrrrs_J_3_t_4)
-    rrrrs_J_3_yz = (
-    rrrrs_link3_inertia_yz -
-        rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
-    )
-    rrrrs_J_3_zz = rrrrs_link3_inertia_zz - rrrrs_link3_mass*(rrrrs_J_3_t_3 - rrrrs_J_3_t_4)
-    # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-    rrrrs_Jc_3_zz = rrrrs_J_3_zz + rrrrs_J_4_zz
-    # (rrrrs-h_3) first moment of link 3 about the origin of link 3
-    rrrrs_h_3_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass
-    rrrrs_h_3_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
-    rrrrs_h_3_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    # (rrrrs-h_1) first moment of link 1 about the origin of link 1
+    rrrrs_h_1_in_spec1_x = rrrrs_link1_centre_of_mass_x*rrrrs_link1_mass
+    rrrrs_h_1_in_spec1_y = rrrrs_link1_centre_of_mass_y*rrrrs_link1_mass
+    rrrrs_h_1_in_spec1_z = rrrrs_link1_centre_of_mass_z*rrrrs_link1_mass
     # (rrrrs-J_1) inertia tensor of link 1 about the origin of link 1
     rrrrs_J_1_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x
     rrrrs_J_1_t_2 = (
     rrrrs_J_1_t + rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
         rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z
     )
-    rrrrs_J_1_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(rrrrs_J_1_t - rrrrs_J_1_t_2)
+    rrrrs_J_1_in_spec1_xx = (
+    rrrrs_link1_inertia_xx - rrrrs_link1_mass*(rrrrs_J_1_t - rrrrs_J_1_t_2)
+    )
     # (rrrrs-h_2) first moment of link 2 about the origin of link 2
-    rrrrs_h_2_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass
-    rrrrs_h_2_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
-    rrrrs_h_2_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
+    rrrrs_h_2_in_spec2_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass
+    rrrrs_h_2_in_spec2_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
+    rrrrs_h_2_in_spec2_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
     # (rrrrs-J_2) inertia tensor of link 2 about the origin of link 2
     rrrrs_J_2_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x
     rrrrs_J_2_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y
     rrrrs_J_2_t_3 = rrrrs_link2_centre_of_mass_z*rrrrs_link2_centre_of_mass_z
     rrrrs_J_2_t_4 = rrrrs_J_2_t + rrrrs_J_2_t_2 + rrrrs_J_2_t_3
-    rrrrs_J_2_xx = rrrrs_link2_inertia_xx - rrrrs_link2_mass*(rrrrs_J_2_t - rrrrs_J_2_t_4)
-    rrrrs_J_2_xy = (
+    rrrrs_J_2_in_spec2_xx = (
+    rrrrs_link2_inertia_xx - rrrrs_link2_mass*(rrrrs_J_2_t - rrrrs_J_2_t_4)
+    )
+    rrrrs_J_2_in_spec2_xy = (
     rrrrs_link2_inertia_xy -
         rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
     )
-    rrrrs_J_2_xz = (
+    rrrrs_J_2_in_spec2_xz = (
     rrrrs_link2_inertia_xz -
         rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
     )
-    rrrrs_J_2_yy = rrrrs_link2_inertia_yy - rrrrs_link2_mass*(rrrrs_J_2_t_2 - rrrrs_J_2_t_4)
-    rrrrs_J_2_yz = (
+    rrrrs_J_2_in_spec2_yy = (
+    rrrrs_link2_inertia_yy - rrrrs_link2_mass*(rrrrs_J_2_t_2 - rrrrs_J_2_t_4)
+    )
+    rrrrs_J_2_in_spec2_yz = (
     rrrrs_link2_inertia_yz -
         rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
     )
-    rrrrs_J_2_zz = rrrrs_link2_inertia_zz - rrrrs_link2_mass*(rrrrs_J_2_t_3 - rrrrs_J_2_t_4)
+    rrrrs_J_2_in_spec2_zz = (
+    rrrrs_link2_inertia_zz - rrrrs_link2_mass*(rrrrs_J_2_t_3 - rrrrs_J_2_t_4)
+    )
+    # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+    rrrrs_h_3_t = 0.5*rrrrs_size_t
+    rrrrs_h_3_t_2 = 0.5*rrrrs_size_t_2
+    rrrrs_h_3_in_spec3_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass
+    rrrrs_h_3_in_spec3_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
+    rrrrs_h_3_in_spec3_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    # (rrrrs-J_3) inertia tensor of link 3 about the origin of link 3
+    rrrrs_J_3_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x
+    rrrrs_J_3_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y
+    rrrrs_J_3_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z
+    rrrrs_J_3_t_4 = rrrrs_J_3_t + rrrrs_J_3_t_2 + rrrrs_J_3_t_3
+    rrrrs_J_3_in_spec3_xx = (
+    rrrrs_link3_inertia_xx - rrrrs_link3_mass*(rrrrs_J_3_t - rrrrs_J_3_t_4)
+    )
+    rrrrs_J_3_in_spec3_xy = (
+    rrrrs_link3_inertia_xy -
+        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
+    )
+    rrrrs_J_3_in_spec3_xz = (
+    rrrrs_link3_inertia_xz -
+        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    )
+    rrrrs_J_3_in_spec3_yy = (
+    rrrrs_link3_inertia_yy - rrrrs_link3_mass*(rrrrs_J_3_t_2 - rrrrs_J_3_t_4)
+    )
+    rrrrs_J_3_in_spec3_yz = (
+    rrrrs_link3_inertia_yz -
+        rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    )
+    rrrrs_J_3_in_spec3_zz = (
+    rrrrs_link3_inertia_zz - rrrrs_link3_mass*(rrrrs_J_3_t_3 - rrrrs_J_3_t_4)
+    )
+    # (rrrrs-rho_tip_4) connection point to the centre of mass of link 4
+    rrrrs_rho_tip_4_in_spec4_x = rrrrs_link4_centre_of_mass_x - rrrrs_platform_joint_offset_x
+    # (rrrrs-h_4) first moment of link 4 about the connection point
+    rrrrs_h_4_in_spec4_x = rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x
+    rrrrs_h_4_in_spec4_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
+    rrrrs_h_4_in_spec4_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
+    # (rrrrs-J_4) inertia tensor of link 4 about the connection point
+    rrrrs_J_4_t = rrrrs_rho_tip_4_in_spec4_x*rrrrs_rho_tip_4_in_spec4_x
+    rrrrs_J_4_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y
+    rrrrs_J_4_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z
+    rrrrs_J_4_t_4 = rrrrs_J_4_t + rrrrs_J_4_t_2 + rrrrs_J_4_t_3
+    rrrrs_J_4_in_spec4_xx = (
+    rrrrs_link4_inertia_xx - rrrrs_link4_mass*(rrrrs_J_4_t - rrrrs_J_4_t_4)
+    )
+    rrrrs_J_4_in_spec4_xy = (
+    rrrrs_link4_inertia_xy -
+        rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x
+    )
+    rrrrs_J_4_in_spec4_xz = (
+    rrrrs_link4_inertia_xz -
+        rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass*rrrrs_rho_tip_4_in_spec4_x
+    )
+    rrrrs_J_4_in_spec4_yy = (
+    rrrrs_link4_inertia_yy - rrrrs_link4_mass*(rrrrs_J_4_t_2 - rrrrs_J_4_t_4)
+    )
+    rrrrs_J_4_in_spec4_yz = (
+    rrrrs_link4_inertia_yz -
+        rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
+    )
+    rrrrs_J_4_in_spec4_zz = (
+    rrrrs_link4_inertia_zz - rrrrs_link4_mass*(rrrrs_J_4_t_3 - rrrrs_J_4_t_4)
+    )
+    # (rrrrs-rho2_3) squared amplitude
+    rrrrs_rho2_3_t = rrrrs_size*rrrrs_size*rrrrs_size_t_3
+    # (rrrrs-x_4) from the origin of joint 4 to the connection point
+    inv_rrrrs_size_t = 1.0/rrrrs_size_t
+    # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+    inv_rrrrs_size_t_2 = 1.0/rrrrs_size_t_2
+    # (rrrrs-w_4) reciprocal vector 3
+    rrrrs_w_4_in_axes4_y = 1.0/rrrrs_platform_joint_offset_x
+    # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
+    rrrrs_acc_3_t = (
+    gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy + gravity_z*rrrrs_base_frame_zy
+    )
+    rrrrs_acc_3_t_2 = (
+    gravity_x*rrrrs_base_frame_xz + gravity_y*rrrrs_base_frame_yz + gravity_z*rrrrs_base_frame_zz
+    )
+    rrrrs_g_in_axes1_z = (
+    gravity_x*rrrrs_base_frame_xx + gravity_y*rrrrs_base_frame_yx + gravity_z*rrrrs_base_frame_zx
+    )
+    # (rrrrs-d_phi_4) coefficient of the acceleration in: inertia force of link 4 from its turning about its reference point
+    rrrrs_d_phi_4_t = rrrrs_h_4_in_spec4_y*rrrrs_w_4_in_axes4_y
+    # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+    rrrrs_Jc_3_in_axes3_zz = rrrrs_J_3_in_spec3_zz + rrrrs_J_4_in_spec4_zz
     # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
     rrrrs_Jc_2_t = 0.5*rrrrs_joint3_offset_x*rrrrs_link3_mass
-    rrrrs_Jc_2_t_2 = rrrrs_h_3_z*rrrrs_joint3_offset_x
+    # (rrrrs-trace_J_4) half the trace of that inertia tensor
+    rrrrs_trace_J_4 = (
+    0.5*rrrrs_J_4_in_spec4_xx + 0.5*rrrrs_J_4_in_spec4_yy + 0.5*rrrrs_J_4_in_spec4_zz
+    )
+    # (rrrrs-Sigma_4) second moment of mass of the links that turn with link 4
+    rrrrs_Sigma_4_in_axes4_xx = rrrrs_trace_J_4 - rrrrs_J_4_in_spec4_xx
+    rrrrs_Sigma_4_in_axes4_yy = rrrrs_trace_J_4 - rrrrs_J_4_in_spec4_yy
+    rrrrs_Sigma_4_in_axes4_zz = rrrrs_trace_J_4 - rrrrs_J_4_in_spec4_zz
+    # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    rrrrs_d_Gamma_4_t = rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y
+    rrrrs_d_Gamma_4_in_axes4_y = rrrrs_d_Gamma_4_t + rrrrs_h_4_in_spec4_x
+    # (rrrrs-trace_J_3) half the trace of that inertia tensor
+    rrrrs_trace_J_3 = (
+    0.5*rrrrs_J_3_in_spec3_xx + 0.5*rrrrs_J_3_in_spec3_yy + 0.5*rrrrs_J_3_in_spec3_zz
+    )
+    # (rrrrs-Sigma_3) second moment of mass of the links that turn with link 3
+    rrrrs_Sigma_3_in_axes3_xx = rrrrs_trace_J_3 - rrrrs_J_3_in_spec3_xx
+    rrrrs_Sigma_3_in_axes3_yy = rrrrs_trace_J_3 - rrrrs_J_3_in_spec3_yy
+    rrrrs_Sigma_3_in_axes3_zz = rrrrs_trace_J_3 - rrrrs_J_3_in_spec3_zz
+    # (rrrrs-trace_J_2) half the trace of that inertia tensor
+    rrrrs_trace_J_2 = (
+    0.5*rrrrs_J_2_in_spec2_xx + 0.5*rrrrs_J_2_in_spec2_yy + 0.5*rrrrs_J_2_in_spec2_zz
+    )
+    # (rrrrs-Sigma_2) second moment of mass of the links that turn with link 2
+    rrrrs_Sigma_2_in_axes2_xx = rrrrs_trace_J_2 - rrrrs_J_2_in_spec2_xx
+    rrrrs_Sigma_2_in_axes2_yy = rrrrs_trace_J_2 - rrrrs_J_2_in_spec2_yy
+    rrrrs_Sigma_2_in_axes2_zz = rrrrs_trace_J_2 - rrrrs_J_2_in_spec2_zz
+    # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_rrrrs_size_t_3 = 1.0/rrrrs_size_t_3
+    inv_rrrrs_rho2_3_t = 1.0/rrrrs_rho2_3_t
+    inv_rrrrs_size = 1.0/rrrrs_size
     # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    rrrrs_d_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_y
+    rrrrs_d_G_in_axes4_yy = rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_y
     # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    rrrrs_d_c_yy = -rrrrs_d_G_t - inv_rrrrs_platform_joint_offset_x*rrrrs_h_4_x
+    rrrrs_d_c_in_axes4_yy = -rrrrs_d_G_in_axes4_yy - rrrrs_h_4_in_spec4_x*rrrrs_w_4_in_axes4_y
+    # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+    rrrrs_d_P_2_t = rrrrs_h_3_in_spec3_z*rrrrs_joint3_offset_x
     # (h_star) first moment about the platform origin
     rrrrs_h_star_t = rrrrs_link4_mass*rrrrs_platform_point_x
     rrrrs_h_star_t_2 = rrrrs_link4_mass*rrrrs_platform_point_y
@@ -918,155 +982,150 @@ def _prepare(p):
     rrrrs_J_star_t_8 = rrrrs_link4_mass*(rrrrs_J_star_t_2 - rrrrs_J_star_t_4)
     rrrrs_J_star_t_9 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z
     rrrrs_J_star_t_10 = rrrrs_link4_mass*(rrrrs_J_star_t_3 - rrrrs_J_star_t_4)
-    # (rrrrs-trace_J_4) half the trace of that inertia tensor
-    rrrrs_trace_J_4 = 0.5*rrrrs_J_4_xx + 0.5*rrrrs_J_4_yy + 0.5*rrrrs_J_4_zz
-    # (rrrrs-Sigma_4) second moment of mass of the links that turn with link 4
-    rrrrs_Sigma_4_xx = rrrrs_trace_J_4 - rrrrs_J_4_xx
-    rrrrs_Sigma_4_yy = rrrrs_trace_J_4 - rrrrs_J_4_yy
-    rrrrs_Sigma_4_zz = rrrrs_trace_J_4 - rrrrs_J_4_zz
-    # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    rrrrs_g_r0_x = (
-    gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy + gravity_z*rrrrs_base_frame_zy
-    )
-    rrrrs_g_r0_y = (
-    gravity_x*rrrrs_base_frame_xz + gravity_y*rrrrs_base_frame_yz + gravity_z*rrrrs_base_frame_zz
-    )
-    rrrrs_g_r0_z = (
-    gravity_x*rrrrs_base_frame_xx + gravity_y*rrrrs_base_frame_yx + gravity_z*rrrrs_base_frame_zx
-    )
-    # (rrrrs-trace_J_3) half the trace of that inertia tensor
-    rrrrs_trace_J_3 = 0.5*rrrrs_J_3_xx + 0.5*rrrrs_J_3_yy + 0.5*rrrrs_J_3_zz
-    # (rrrrs-Sigma_3) second moment of mass of the links that turn with link 3
-    rrrrs_Sigma_3_xx = rrrrs_trace_J_3 - rrrrs_J_3_xx
-    rrrrs_Sigma_3_yy = rrrrs_trace_J_3 - rrrrs_J_3_yy
-    rrrrs_Sigma_3_zz = rrrrs_trace_J_3 - rrrrs_J_3_zz
-    # (rrrrs-trace_J_2) half the trace of that inertia tensor
-    rrrrs_trace_J_2 = 0.5*rrrrs_J_2_xx + 0.5*rrrrs_J_2_yy + 0.5*rrrrs_J_2_zz
-    # (rrrrs-Sigma_2) second moment of mass of the links that turn with link 2
-    rrrrs_Sigma_2_xx = rrrrs_trace_J_2 - rrrrs_J_2_xx
-    rrrrs_Sigma_2_yy = rrrrs_trace_J_2 - rrrrs_J_2_yy
-    rrrrs_Sigma_2_zz = rrrrs_trace_J_2 - rrrrs_J_2_zz
-    # (rrrrs-h_1) first moment of link 1 about the origin of link 1
-    rrrrs_h_1_x = rrrrs_link1_centre_of_mass_x*rrrrs_link1_mass
-    rrrrs_h_1_y = rrrrs_link1_centre_of_mass_y*rrrrs_link1_mass
-    rrrrs_h_1_z = rrrrs_link1_centre_of_mass_z*rrrrs_link1_mass
     # (potential) potential energy
-    rrrrs_b_r0_x = (
+    rrrrs_potential_t = (
     rrrrs_base_frame_xy*rrrrs_base_point_x + rrrrs_base_frame_yy*rrrrs_base_point_y +
         rrrrs_base_frame_zy*rrrrs_base_point_z
     )
-    rrrrs_b_r0_y = (
+    rrrrs_potential_t_2 = (
     rrrrs_base_frame_xz*rrrrs_base_point_x + rrrrs_base_frame_yz*rrrrs_base_point_y +
         rrrrs_base_frame_zz*rrrrs_base_point_z
     )
-    rrrrs_b_r0_z = (
+    rrrrs_b_in_spec1_x = (
     rrrrs_base_frame_xx*rrrrs_base_point_x + rrrrs_base_frame_yx*rrrrs_base_point_y +
         rrrrs_base_frame_zx*rrrrs_base_point_z
     )
-    rrrrs_potential_t = rrrrs_b_r0_z*rrrrs_link1_mass
-    rrrrs_potential_t_2 = rrrrs_link2_mass*(rrrrs_b_r0_z + rrrrs_joint2_offset_x)
-    # (rrrrs-rho2_1) squared amplitude
-    inv_rrrrs_size_t_4 = 1.0/rrrrs_size_t_3
-    # (rrrrs-rho2_3) squared amplitude
-    inv_rrrrs_rho2_3_t_4 = 1.0/rrrrs_rho2_3_t
-    # (rrrrs-w_1) reciprocal vector 1
-    inv_rrrrs_size = 1.0/rrrrs_size
-    total_rrrrs = np.sum(np.broadcast_to(rrrrs_link4_mass, _rrrrs))
-    total_rrrrs_x = np.sum(np.broadcast_to(rrrrs_h_star_t, _rrrrs))
-    total_rrrrs_y = np.sum(np.broadcast_to(rrrrs_h_star_t_2, _rrrrs))
-    total_rrrrs_z = np.sum(np.broadcast_to(rrrrs_h_star_t_3, _rrrrs))
-    total_rrrrs_xx = np.sum(np.broadcast_to(rrrrs_J_star_t_5, _rrrrs))
-    total_rrrrs_xy = np.sum(np.broadcast_to(rrrrs_J_star_t_6, _rrrrs))
-    total_rrrrs_xz = np.sum(np.broadcast_to(rrrrs_J_star_t_7, _rrrrs))
-    total_rrrrs_yy = np.sum(np.broadcast_to(rrrrs_J_star_t_8, _rrrrs))
-    total_rrrrs_yz = np.sum(np.broadcast_to(rrrrs_J_star_t_9, _rrrrs))
-    total_rrrrs_zz = np.sum(np.broadcast_to(rrrrs_J_star_t_10, _rrrrs))
-    total_rrrrs_x_2 = np.sum(np.broadcast_to(rrrrs_platform_point_x, _rrrrs))
-    total_rrrrs_y_2 = np.sum(np.broadcast_to(rrrrs_platform_point_y, _rrrrs))
-    total_rrrrs_z_2 = np.sum(np.broadcast_to(rrrrs_platform_point_z, _rrrrs))
-    total_rrrrs_2 = np.sum(np.broadcast_to(rrrrs_size_t_3, _rrrrs))
+    rrrrs_potential_t_3 = rrrrs_b_in_spec1_x*rrrrs_link1_mass
+    rrrrs_potential_t_4 = rrrrs_link2_mass*(rrrrs_b_in_spec1_x + rrrrs_joint2_offset_x)
+    m_star_rrrrs = np.sum(np.broadcast_to(rrrrs_link4_mass, _rrrrs))
+    h_star_rrrrs_in_platform_x = np.sum(np.broadcast_to(rrrrs_h_star_t, _rrrrs))
+    h_star_rrrrs_in_platform_y = np.sum(np.broadcast_to(rrrrs_h_star_t_2, _rrrrs))
+    h_star_rrrrs_in_platform_z = np.sum(np.broadcast_to(rrrrs_h_star_t_3, _rrrrs))
+    J_star_rrrrs_in_platform_xx = np.sum(np.broadcast_to(-rrrrs_J_star_t_5, _rrrrs))
+    J_star_rrrrs_in_platform_xy = np.sum(np.broadcast_to(-rrrrs_J_star_t_6, _rrrrs))
+    J_star_rrrrs_in_platform_xz = np.sum(np.broadcast_to(-rrrrs_J_star_t_7, _rrrrs))
+    J_star_rrrrs_in_platform_yy = np.sum(np.broadcast_to(-rrrrs_J_star_t_8, _rrrrs))
+    J_star_rrrrs_in_platform_yz = np.sum(np.broadcast_to(-rrrrs_J_star_t_9, _rrrrs))
+    J_star_rrrrs_in_platform_zz = np.sum(np.broadcast_to(-rrrrs_J_star_t_10, _rrrrs))
+    b_c_rrrrs_in_platform_x = np.sum(np.broadcast_to(rrrrs_platform_point_x, _rrrrs))
+    b_c_rrrrs_in_platform_y = np.sum(np.broadcast_to(rrrrs_platform_point_y, _rrrrs))
+    b_c_rrrrs_in_platform_z = np.sum(np.broadcast_to(rrrrs_platform_point_z, _rrrrs))
+    legs_size_rrrrs = np.sum(np.broadcast_to(rrrrs_size_t_3, _rrrrs))
     # (rrrs-size) length of the leg's lever arms, the measure of what is near singular
     rrrs_size_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x
     rrrs_size_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
     rrrs_size_t_3 = 6.696672622239999e-07 + rrrs_size_t + rrrs_size_t_2
     rrrs_size = sqrt(rrrs_size_t_3)
-    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    rrrs_Kd_2_t = 0.5*rrrs_size_t
-    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
-    # (rrrs-rho2_2) squared amplitude
-    rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
-    # (rrrs-xi_2) the vector from joint 2 to the connection point, resolved along link 2
-    inv_rrrs_size_t = 1.0/rrrs_size_t
-    # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-    inv_rrrs_size_t_2 = 1.0/rrrs_size_t_2
-    # (rrrs-rho_tip_3) connection point to the centre of mass of link 3
-    rrrs_rho_tip_3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
-    # (rrrs-h_3) first moment of link 3 about the connection point
-    rrrs_h_3_x = rrrs_link3_mass*rrrs_rho_tip_3_x
-    rrrs_h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
-    rrrs_h_3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    # (rrrs-w_3) reciprocal vector 3
-    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
-    # (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    rrrs_d_phi_3_t = inv_rrrs_platform_joint_offset_x*rrrs_h_3_y
-    # (rrrs-J_3) inertia tensor of link 3 about the connection point
-    rrrs_J_3_t = rrrs_rho_tip_3_x*rrrs_rho_tip_3_x
-    rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
-    rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
-    rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3
-    rrrs_J_3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t - rrrs_J_3_t_4)
-    rrrs_J_3_xy = (
-    rrrs_link3_inertia_xy - rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_x
-    )
-    rrrs_J_3_xz = (
-    rrrs_link3_inertia_xz - rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_x
-    )
-    rrrs_J_3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 - rrrs_J_3_t_4)
-    rrrs_J_3_yz = (
-    rrrs_link3_inertia_yz -
-        rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    )
-    rrrs_J_3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
-    # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    rrrs_d_Gamma_3_t = inv_rrrs_platform_joint_offset_x*rrrs_J_3_zz
-    rrrs_d_Gamma_3_y = rrrs_d_Gamma_3_t + rrrs_h_3_x
-    # (rrrs-J_2) inertia tensor of link 2 about the origin of link 2
-    rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
-    rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
-    rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
-    rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3
-    rrrs_J_2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t - rrrs_J_2_t_4)
-    rrrs_J_2_xy = (
-    rrrs_link2_inertia_xy -
-        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass
-    )
-    rrrs_J_2_xz = (
-    rrrs_link2_inertia_xz -
-        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    )
-    rrrs_J_2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 - rrrs_J_2_t_4)
-    rrrs_J_2_yz = (
-    rrrs_link2_inertia_yz -
-        rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    )
-    rrrs_J_2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 - rrrs_J_2_t_4)
-    # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-    rrrs_Jc_2_zz = rrrs_J_2_zz + rrrs_J_3_zz
-    # (rrrs-h_2) first moment of link 2 about the origin of link 2
-    rrrs_h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
-    rrrs_h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
-    rrrs_h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    # (rrrs-h_1) first moment of link 1 about the origin of link 1
+    rrrs_h_1_in_spec1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
+    rrrs_h_1_in_spec1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
+    rrrs_h_1_in_spec1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
     # (rrrs-J_1) inertia tensor of link 1 about the origin of link 1
     rrrs_J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
     rrrs_J_1_t_2 = (
     rrrs_J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
         rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
     )
-    rrrs_J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
+    rrrs_J_1_in_spec1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(rrrs_J_1_t - rrrs_J_1_t_2)
+    # (rrrs-h_2) first moment of link 2 about the origin of link 2
+    rrrs_h_2_in_spec2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
+    rrrs_h_2_in_spec2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    rrrs_h_2_in_spec2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    # (rrrs-J_2) inertia tensor of link 2 about the origin of link 2
+    rrrs_J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
+    rrrs_J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
+    rrrs_J_2_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
+    rrrs_J_2_t_4 = rrrs_J_2_t + rrrs_J_2_t_2 + rrrs_J_2_t_3
+    rrrs_J_2_in_spec2_xx = rrrs_link2_inertia_xx - rrrs_link2_mass*(rrrs_J_2_t - rrrs_J_2_t_4)
+    rrrs_J_2_in_spec2_xy = (
+    rrrs_link2_inertia_xy -
+        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    )
+    rrrs_J_2_in_spec2_xz = (
+    rrrs_link2_inertia_xz -
+        rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    )
+    rrrs_J_2_in_spec2_yy = rrrs_link2_inertia_yy - rrrs_link2_mass*(rrrs_J_2_t_2 - rrrs_J_2_t_4)
+    rrrs_J_2_in_spec2_yz = (
+    rrrs_link2_inertia_yz -
+        rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    )
+    rrrs_J_2_in_spec2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(rrrs_J_2_t_3 - rrrs_J_2_t_4)
+    # (rrrs-rho_tip_3) connection point to the centre of mass of link 3
+    rrrs_rho_tip_3_in_spec3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
+    # (rrrs-h_3) first moment of link 3 about the connection point
+    rrrs_h_3_in_spec3_x = rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x
+    rrrs_h_3_in_spec3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
+    rrrs_h_3_in_spec3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
+    # (rrrs-J_3) inertia tensor of link 3 about the connection point
+    rrrs_J_3_t = rrrs_rho_tip_3_in_spec3_x*rrrs_rho_tip_3_in_spec3_x
+    rrrs_J_3_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
+    rrrs_J_3_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
+    rrrs_J_3_t_4 = rrrs_J_3_t + rrrs_J_3_t_2 + rrrs_J_3_t_3
+    rrrs_J_3_in_spec3_xx = rrrs_link3_inertia_xx - rrrs_link3_mass*(rrrs_J_3_t - rrrs_J_3_t_4)
+    rrrs_J_3_in_spec3_xy = (
+    rrrs_link3_inertia_xy - rrrs_link3_centre_of_mass_y*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x
+    )
+    rrrs_J_3_in_spec3_xz = (
+    rrrs_link3_inertia_xz - rrrs_link3_centre_of_mass_z*rrrs_link3_mass*rrrs_rho_tip_3_in_spec3_x
+    )
+    rrrs_J_3_in_spec3_yy = rrrs_link3_inertia_yy - rrrs_link3_mass*(rrrs_J_3_t_2 - rrrs_J_3_t_4)
+    rrrs_J_3_in_spec3_yz = (
+    rrrs_link3_inertia_yz -
+        rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
+    )
+    rrrs_J_3_in_spec3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(rrrs_J_3_t_3 - rrrs_J_3_t_4)
+    # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    rrrs_Kd_2_t = 0.5*rrrs_size_t
+    rrrs_Kd_2_t_2 = 0.5*rrrs_size_t_2
+    # (rrrs-rho2_2) squared amplitude
+    rrrs_rho2_2_t = rrrs_size*rrrs_size*rrrs_size_t_3
+    # (rrrs-x_3) from the origin of joint 3 to the connection point
+    inv_rrrs_size_t = 1.0/rrrs_size_t
+    # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_rrrs_size_t_2 = 1.0/rrrs_size_t_2
+    # (rrrs-w_3) reciprocal vector 3
+    rrrs_w_3_in_axes3_y = 1.0/rrrs_platform_joint_offset_x
+    # (rrrs-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    rrrs_d_phi_3_t = rrrs_h_3_in_spec3_y*rrrs_w_3_in_axes3_y
+    # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+    rrrs_Jc_2_in_axes2_zz = rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz
+    # (rrrs-trace_J_3) half the trace of that inertia tensor
+    rrrs_trace_J_3 = (
+    0.5*rrrs_J_3_in_spec3_xx + 0.5*rrrs_J_3_in_spec3_yy + 0.5*rrrs_J_3_in_spec3_zz
+    )
+    # (rrrs-Sigma_3) second moment of mass of the links that turn with link 3
+    rrrs_Sigma_3_in_axes3_xx = rrrs_trace_J_3 - rrrs_J_3_in_spec3_xx
+    rrrs_Sigma_3_in_axes3_yy = rrrs_trace_J_3 - rrrs_J_3_in_spec3_yy
+    rrrs_Sigma_3_in_axes3_zz = rrrs_trace_J_3 - rrrs_J_3_in_spec3_zz
+    # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    rrrs_d_Gamma_3_t = rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y
+    rrrs_d_Gamma_3_in_axes3_y = rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x
+    # (rrrs-trace_J_2) half the trace of that inertia tensor
+    rrrs_trace_J_2 = (
+    0.5*rrrs_J_2_in_spec2_xx + 0.5*rrrs_J_2_in_spec2_yy + 0.5*rrrs_J_2_in_spec2_zz
+    )
+    # (rrrs-Sigma_2) second moment of mass of the links that turn with link 2
+    rrrs_Sigma_2_in_axes2_xx = rrrs_trace_J_2 - rrrs_J_2_in_spec2_xx
+    rrrs_Sigma_2_in_axes2_yy = rrrs_trace_J_2 - rrrs_J_2_in_spec2_yy
+    rrrs_Sigma_2_in_axes2_zz = rrrs_trace_J_2 - rrrs_J_2_in_spec2_zz
+    # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+    rrrs_mu_2_t = (
+    gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy + gravity_z*rrrs_base_frame_zy
+    )
+    rrrs_mu_2_t_2 = (
+    gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz + gravity_z*rrrs_base_frame_zz
+    )
+    rrrs_g_in_axes1_z = (
+    gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
+    )
+    # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_rrrs_size_t_3 = 1.0/rrrs_size_t_3
+    inv_rrrs_rho2_2_t = 1.0/rrrs_rho2_2_t
+    inv_rrrs_size = 1.0/rrrs_size
     # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    rrrs_d_c_yy = (
-    -inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_y -
-        inv_rrrs_platform_joint_offset_x*rrrs_h_3_x
+    rrrs_d_c_in_axes3_yy = (
+    -rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_y - rrrs_h_3_in_spec3_x*rrrs_w_3_in_axes3_y
     )
     # (h_star) first moment about the platform origin
     rrrs_h_star_t = rrrs_link3_mass*rrrs_platform_point_x
@@ -1083,213 +1142,228 @@ def _prepare(p):
     rrrs_J_star_t_8 = rrrs_link3_mass*(rrrs_J_star_t_2 - rrrs_J_star_t_4)
     rrrs_J_star_t_9 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z
     rrrs_J_star_t_10 = rrrs_link3_mass*(rrrs_J_star_t_3 - rrrs_J_star_t_4)
-    # (rrrs-trace_J_3) half the trace of that inertia tensor
-    rrrs_trace_J_3 = 0.5*rrrs_J_3_xx + 0.5*rrrs_J_3_yy + 0.5*rrrs_J_3_zz
-    # (rrrs-Sigma_3) second moment of mass of the links that turn with link 3
-    rrrs_Sigma_3_xx = rrrs_trace_J_3 - rrrs_J_3_xx
-    rrrs_Sigma_3_yy = rrrs_trace_J_3 - rrrs_J_3_yy
-    rrrs_Sigma_3_zz = rrrs_trace_J_3 - rrrs_J_3_zz
-    # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    rrrs_g_r0_x = (
-    gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy + gravity_z*rrrs_base_frame_zy
-    )
-    rrrs_g_r0_y = (
-    gravity_x*rrrs_base_frame_xz + gravity_y*rrrs_base_frame_yz + gravity_z*rrrs_base_frame_zz
-    )
-    rrrs_g_r0_z = (
-    gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
-    )
-    # (rrrs-trace_J_2) half the trace of that inertia tensor
-    rrrs_trace_J_2 = 0.5*rrrs_J_2_xx + 0.5*rrrs_J_2_yy + 0.5*rrrs_J_2_zz
-    # (rrrs-Sigma_2) second moment of mass of the links that turn with link 2
-    rrrs_Sigma_2_xx = rrrs_trace_J_2 - rrrs_J_2_xx
-    rrrs_Sigma_2_yy = rrrs_trace_J_2 - rrrs_J_2_yy
-    rrrs_Sigma_2_zz = rrrs_trace_J_2 - rrrs_J_2_zz
-    # (rrrs-h_1) first moment of link 1 about the origin of link 1
-    rrrs_h_1_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
-    rrrs_h_1_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
-    rrrs_h_1_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
     # (potential) potential energy
-    rrrs_b_r0_x = (
+    rrrs_potential_t = (
     rrrs_base_frame_xy*rrrs_base_point_x + rrrs_base_frame_yy*rrrs_base_point_y +
         rrrs_base_frame_zy*rrrs_base_point_z
     )
-    rrrs_b_r0_y = (
+    rrrs_potential_t_2 = (
     rrrs_base_frame_xz*rrrs_base_point_x + rrrs_base_frame_yz*rrrs_base_point_y +
         rrrs_base_frame_zz*rrrs_base_point_z
     )
-    rrrs_b_r0_z = (
+    rrrs_b_in_spec1_x = (
     rrrs_base_frame_xx*rrrs_base_point_x + rrrs_base_frame_yx*rrrs_base_point_y +
         rrrs_base_frame_zx*rrrs_base_point_z
     )
-    rrrs_potential_t = rrrs_b_r0_z*rrrs_link1_mass
-    rrrs_potential_t_2 = rrrs_link2_mass*(rrrs_b_r0_z + rrrs_joint2_offset_x)
-    # (rrrs-rho2_1) squared amplitude
-    inv_rrrs_size_t_3 = 1.0/rrrs_size_t_3
-    # (rrrs-rho2_2) squared amplitude
-    inv_rrrs_rho2_2_t_4 = 1.0/rrrs_rho2_2_t
-    # (rrrs-w_1) reciprocal vector 1
-    inv_rrrs_size = 1.0/rrrs_size
-    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
-    total_rrrs_x = np.sum(np.broadcast_to(rrrs_h_star_t, _rrrs))
-    total_rrrs_y = np.sum(np.broadcast_to(rrrs_h_star_t_2, _rrrs))
-    total_rrrs_z = np.sum(np.broadcast_to(rrrs_h_star_t_3, _rrrs))
-    total_rrrs_xx = np.sum(np.broadcast_to(rrrs_J_star_t_5, _rrrs))
-    total_rrrs_xy = np.sum(np.broadcast_to(rrrs_J_star_t_6, _rrrs))
-    total_rrrs_xz = np.sum(np.broadcast_to(rrrs_J_star_t_7, _rrrs))
-    total_rrrs_yy = np.sum(np.broadcast_to(rrrs_J_star_t_8, _rrrs))
-    total_rrrs_yz = np.sum(np.broadcast_to(rrrs_J_star_t_9, _rrrs))
-    total_rrrs_zz = np.sum(np.broadcast_to(rrrs_J_star_t_10, _rrrs))
-    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
-    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
-    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
-    total_rrrs_2 = np.sum(np.broadcast_to(rrrs_size_t_3, _rrrs))
+    rrrs_potential_t_3 = rrrs_b_in_spec1_x*rrrs_link1_mass
+    rrrs_potential_t_4 = rrrs_link2_mass*(rrrs_b_in_spec1_x + rrrs_joint2_offset_x)
+    m_star_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
+    h_star_rrrs_in_platform_x = np.sum(np.broadcast_to(rrrs_h_star_t, _rrrs))
+    h_star_rrrs_in_platform_y = np.sum(np.broadcast_to(rrrs_h_star_t_2, _rrrs))
+    h_star_rrrs_in_platform_z = np.sum(np.broadcast_to(rrrs_h_star_t_3, _rrrs))
+    J_star_rrrs_in_platform_xx = np.sum(np.broadcast_to(-rrrs_J_star_t_5, _rrrs))
+    J_star_rrrs_in_platform_xy = np.sum(np.broadcast_to(-rrrs_J_star_t_6, _rrrs))
+    J_star_rrrs_in_platform_xz = np.sum(np.broadcast_to(-rrrs_J_star_t_7, _rrrs))
+    J_star_rrrs_in_platform_yy = np.sum(np.broadcast_to(-rrrs_J_star_t_8, _rrrs))
+    J_star_rrrs_in_platform_yz = np.sum(np.broadcast_to(-rrrs_J_star_t_9, _rrrs))
+    J_star_rrrs_in_platform_zz = np.sum(np.broadcast_to(-rrrs_J_star_t_10, _rrrs))
+    b_c_rrrs_in_platform_x = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
+    b_c_rrrs_in_platform_y = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
+    b_c_rrrs_in_platform_z = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
+    legs_size_rrrs = np.sum(np.broadcast_to(rrrs_size_t_3, _rrrs))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rrrrs + total_rrrs
+    m_star = m_star_rrrrs + m_star_rrrs + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_rrrrs_x + total_rrrs_x
-    h_star_y = h_star_t_2 + total_rrrrs_y + total_rrrs_y
-    h_star_z = h_star_t_3 + total_rrrrs_z + total_rrrs_z
+    h_star_in_platform_x = h_star_rrrrs_in_platform_x + h_star_rrrs_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_rrrrs_in_platform_y + h_star_rrrs_in_platform_y + h_star_t_2
+    h_star_in_platform_z = h_star_rrrrs_in_platform_z + h_star_rrrs_in_platform_z + h_star_t_3
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_rrrrs_xx - total_rrrs_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_rrrrs_xy - total_rrrs_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_rrrrs_xz - total_rrrs_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrrs_yy - total_rrrs_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrrs_yz - total_rrrs_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrrs_zz - total_rrrs_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = (
+    J_star_rrrrs_in_platform_xx + J_star_rrrs_in_platform_xx + platform_inertia_xx - J_star_t_5
+    )
+    J_star_in_platform_xy = (
+    J_star_rrrrs_in_platform_xy + J_star_rrrs_in_platform_xy + platform_inertia_xy - J_star_t_6
+    )
+    J_star_in_platform_xz = (
+    J_star_rrrrs_in_platform_xz + J_star_rrrs_in_platform_xz + platform_inertia_xz - J_star_t_7
+    )
+    J_star_in_platform_yy = (
+    J_star_rrrrs_in_platform_yy + J_star_rrrs_in_platform_yy + platform_inertia_yy - J_star_t_8
+    )
+    J_star_in_platform_yz = (
+    J_star_rrrrs_in_platform_yz + J_star_rrrs_in_platform_yz + platform_inertia_yz - J_star_t_9
+    )
+    J_star_in_platform_zz = (
+    J_star_rrrrs_in_platform_zz + J_star_rrrs_in_platform_zz + platform_inertia_zz - J_star_t_10
+    )
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_rrrrs_x_2 + 0.3333333333333333*total_rrrs_x_2
-    b_c_y = 0.3333333333333333*total_rrrrs_y_2 + 0.3333333333333333*total_rrrs_y_2
-    b_c_z = 0.3333333333333333*total_rrrrs_z_2 + 0.3333333333333333*total_rrrs_z_2
+    b_c_in_platform_x = (
+    0.3333333333333333*b_c_rrrrs_in_platform_x + 0.3333333333333333*b_c_rrrs_in_platform_x
+    )
+    b_c_in_platform_y = (
+    0.3333333333333333*b_c_rrrrs_in_platform_y + 0.3333333333333333*b_c_rrrs_in_platform_y
+    )
+    b_c_in_platform_z = (
+    0.3333333333333333*b_c_rrrrs_in_platform_z + 0.3333333333333333*b_c_rrrs_in_platform_z
+    )
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = sqrt(0.3333333333333333*total_rrrrs_2 + 0.3333333333333333*total_rrrs_2)
+    legs_size = sqrt(0.3333333333333333*legs_size_rrrrs + 0.3333333333333333*legs_size_rrrs)
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rrrrs,
-        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-                    rrrrs_J_2_xx, rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yy, rrrrs_J_2_yz,
-                    rrrrs_J_2_zz, rrrrs_J_3_xx, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yy,
-                    rrrrs_J_3_yz, rrrrs_J_4_xx, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yy,
-                    rrrrs_J_4_yz, rrrrs_J_4_zz, rrrrs_Jc_2_t, rrrrs_Jc_2_t_2, rrrrs_Jc_3_zz,
-                    rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy,
-                    rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz,
-                    rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz, rrrrs_base_frame_xx,
-                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
-                    rrrrs_d_G_t, rrrrs_d_Gamma_4_t, rrrrs_d_Gamma_4_y, rrrrs_d_c_yy,
-                    rrrrs_d_phi_4_t, rrrrs_g_r0_x, rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y,
-                    rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y,
-                    rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x,
-                    rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
-                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
+                    rrrrs_J_2_in_spec2_xy, rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yy,
+                    rrrrs_J_2_in_spec2_yz, rrrrs_J_2_in_spec2_zz, rrrrs_J_3_in_spec3_xx,
+                    rrrrs_J_3_in_spec3_xy, rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yy,
+                    rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xx, rrrrs_J_4_in_spec4_xy,
+                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yy, rrrrs_J_4_in_spec4_yz,
+                    rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz,
+                    rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy,
+                    rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
+                    rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
+                    rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy,
+                    rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
+                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y,
+                    rrrrs_d_Gamma_4_t, rrrrs_d_P_2_t, rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t,
+                    rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z,
+                    rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z,
+                    rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t,
+                    rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y,
+                    rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
+                    rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
+                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
-                    rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t,
-                    rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_g_r0_x, rrrs_g_r0_y,
-                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
+                    rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
+                    rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
+                    rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+                    rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_rrrrs,
-        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-                    rrrrs_J_2_xx, rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yy, rrrrs_J_2_yz,
-                    rrrrs_J_2_zz, rrrrs_J_3_xx, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yy,
-                    rrrrs_J_3_yz, rrrrs_J_4_xx, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yy,
-                    rrrrs_J_4_yz, rrrrs_J_4_zz, rrrrs_Jc_2_t, rrrrs_Jc_2_t_2, rrrrs_Jc_3_zz,
-                    rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_d_G_t,
-                    rrrrs_d_Gamma_4_t, rrrrs_d_Gamma_4_y, rrrrs_d_c_yy, rrrrs_d_phi_4_t,
-                    rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
+                    rrrrs_J_2_in_spec2_xy, rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yy,
+                    rrrrs_J_2_in_spec2_yz, rrrrs_J_2_in_spec2_zz, rrrrs_J_3_in_spec3_xx,
+                    rrrrs_J_3_in_spec3_xy, rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yy,
+                    rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xx, rrrrs_J_4_in_spec4_xy,
+                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yy, rrrrs_J_4_in_spec4_yz,
+                    rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz,
+                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y,
+                    rrrrs_d_Gamma_4_t, rrrrs_d_P_2_t, rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t,
+                    rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y, rrrrs_h_3_t, rrrrs_h_3_t_2,
+                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
                     rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
                     rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
+                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+                    rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
-                    rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-                    rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t, rrrs_d_Gamma_3_y, rrrs_d_c_yy,
-                    rrrs_d_phi_3_t, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
+                    rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
+                    rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
+                    rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t, rrrs_d_c_in_axes3_yy,
+                    rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_rrrrs,
-        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-                    rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz,
-                    rrrrs_J_3_yz, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t,
-                    rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz,
-                    rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx,
-                    rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
+                    rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
+                    rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
+                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
+                    rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
+                    rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy,
+                    rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
+                    rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t,
+                    rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
                     rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
                     rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
                     rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
-                    rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x,
-                    rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x,
-                    rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
-                    rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z,
+                    rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+                    rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+                    rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
+                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
+                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
+                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
-                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+                    rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+                    rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -1297,12 +1371,12 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
-                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-                    rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
                     rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
                     rrrrs_size_t_3,),
@@ -1320,41 +1394,51 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_rrrrs,
-        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-                    rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz,
-                    rrrrs_J_3_yz, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t,
-                    rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz,
-                    rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx,
-                    rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
+                    rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
+                    rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
+                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
+                    rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
+                    rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy,
+                    rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
+                    rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t,
+                    rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
                     rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
                     rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
                     rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
-                    rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x,
-                    rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x,
-                    rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
-                    rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z,
+                    rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+                    rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+                    rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
+                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
+                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
+                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
-                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+                    rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+                    rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+                    rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -1362,12 +1446,12 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
-                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-                    rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
                     rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t,
                     rrrrs_size_t_3,),
@@ -1387,25 +1471,25 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t,
-                    rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-                    rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
                     rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-                    rrrrs_size_t_3,),
+                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
-                    rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -1413,25 +1497,25 @@ def _prepare(p):
         (),
             (
                 (_rrrrs,
-        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t,
-                    rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-                    rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
                     rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
                     rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-                    rrrrs_size_t_3,),
+                    rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
-                    rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-                    rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-                    rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-                    rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
+                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
                 ),
             ),
         ),
@@ -1439,97 +1523,110 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_rrrrs,
-        (inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-                    rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz,
-                    rrrrs_J_3_yz, rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t,
-                    rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz,
-                    rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx,
-                    rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
+                    rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
+                    rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
+                    rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
+                    rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
+                    rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy,
+                    rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
+                    rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t,
+                    rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
                     rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
                     rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
                     rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
-                    rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x,
-                    rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x,
-                    rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-                    rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_link4_mass,
-                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
-                ),
-                (_rrrs,
-        (inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-                    rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-                    rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y,
-                    rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-                    rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
-                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
-                    rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
-                ),
-            ),
-        ),
-        "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
-            (
-                (_rrrrs,
-        (inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_b_r0_x,
-                    rrrrs_b_r0_y, rrrrs_b_r0_z, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
-                    rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_x, rrrrs_h_1_y, rrrrs_h_1_z,
-                    rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z,
-                    rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x,
-                    rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link1_mass,
-                    rrrrs_link2_mass, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z,
+                    rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+                    rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+                    rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
+                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_link3_mass, rrrrs_link4_mass, rrrrs_platform_joint_offset_x,
                     rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-                    rrrrs_potential_t, rrrrs_potential_t_2, rrrrs_rho2_3_t, rrrrs_size_t_3,),
+                    rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,),
                 ),
                 (_rrrs,
-        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_b_r0_x, rrrs_b_r0_y,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+                    rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+                    rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+                    rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+                    rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
                     rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
                     rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
                     rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
                     rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-                    rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_x, rrrs_h_1_y, rrrs_h_1_z,
-                    rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z,
+                    rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
+                    rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t,
+                    rrrs_mu_2_t_2, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
+                    rrrs_size_t_3, rrrs_w_3_in_axes3_y,),
+                ),
+            ),
+        ),
+        "potential": (
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
+            (
+                (_rrrrs,
+        (inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_b_in_spec1_x,
+                    rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+                    rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+                    rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+                    rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
+                    rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_x,
+                    rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+                    rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+                    rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
+                    rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
+                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+                    rrrrs_link1_mass, rrrrs_link2_mass, rrrrs_link3_mass,
+                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+                    rrrrs_platform_point_z, rrrrs_potential_t, rrrrs_potential_t_2,
+                    rrrrs_potential_t_3, rrrrs_potential_t_4, rrrrs_rho2_3_t, rrrrs_size_t_3,),
+                ),
+                (_rrrs,
+        (inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z,
+                    rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+                    rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+                    rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z,
                     rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass, rrrs_link2_mass,
-                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-                    rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_rho2_2_t,
-                    rrrs_size_t_3,),
+                    rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
+                    rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z,
+                    rrrs_potential_t, rrrs_potential_t_2, rrrs_potential_t_3, rrrs_potential_t_4,
+                    rrrs_rho2_2_t, rrrs_size_t_3,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size,),
             (
                 (_rrrrs,
-        (inv_rrrrs_rho2_3_t_4, inv_rrrrs_size, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3,
-                    inv_rrrrs_size_t_4, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
-                    rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-                    rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-                    rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-                    rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
-                    rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-                    rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-                    rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,),
+        (inv_rrrrs_rho2_3_t, inv_rrrrs_size, inv_rrrrs_size_t, inv_rrrrs_size_t_2,
+                    inv_rrrrs_size_t_3, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+                    rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+                    rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+                    rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+                    rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+                    rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+                    rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
+                    rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
+                    rrrrs_size_t_3,),
                 ),
                 (_rrrs,
-        (inv_rrrs_rho2_2_t_4, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2,
-                    inv_rrrs_size_t_3, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
-                    rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-                    rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-                    rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-                    rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
-                    rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-                    rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size,
-                    rrrs_size_t_3,),
+        (inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
+                    rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
+                    rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+                    rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+                    rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+                    rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+                    rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+                    rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,),
                 ),
             ),
         ),
@@ -2038,9 +2135,10 @@ def _run_dynamics(m, X, V):
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2095,854 +2193,971 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-            rrrrs_J_2_xx, rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yy, rrrrs_J_2_yz, rrrrs_J_2_zz,
-            rrrrs_J_3_xx, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yy, rrrrs_J_3_yz, rrrrs_J_4_xx,
-            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yy, rrrrs_J_4_yz, rrrrs_J_4_zz, rrrrs_Jc_2_t,
-            rrrrs_Jc_2_t_2, rrrrs_Jc_3_zz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_Sigma_2_xx,
-            rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx, rrrrs_Sigma_3_yy,
-            rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy, rrrrs_Sigma_4_zz,
-            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-            rrrrs_branch_1, rrrrs_branch_3, rrrrs_d_G_t, rrrrs_d_Gamma_4_t, rrrrs_d_Gamma_4_y,
-            rrrrs_d_c_yy, rrrrs_d_phi_4_t, rrrrs_g_r0_x, rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_y,
-            rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y,
-            rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
+            rrrrs_J_2_in_spec2_xy, rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yy,
+            rrrrs_J_2_in_spec2_yz, rrrrs_J_2_in_spec2_zz, rrrrs_J_3_in_spec3_xx,
+            rrrrs_J_3_in_spec3_xy, rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yy,
+            rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xx, rrrrs_J_4_in_spec4_xy,
+            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yy, rrrrs_J_4_in_spec4_yz,
+            rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz,
+            rrrrs_Sigma_2_in_axes2_xx, rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz,
+            rrrrs_Sigma_3_in_axes3_xx, rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz,
+            rrrrs_Sigma_4_in_axes4_xx, rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz,
+            rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3,
+            rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y, rrrrs_d_Gamma_4_t, rrrrs_d_P_2_t,
+            rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
+            rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
+            rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
+            rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
             rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+            rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
-        # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
-        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
-        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
-        # (rrrrs-px_1) component along the reference direction
-        rrrrs_px_1 = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = -sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        # (rrrrs-py_1) component across the reference direction
-        rrrrs_py_1 = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
-        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_11 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_10)
+        rrrrs_h_3_t_12 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
-        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_12 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_11*rrrrs_h_3_t_6
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_13*rrrrs_h_3_t_7 - rrrrs_h_3_t_14
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_11*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_e_1_r3_x = rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4
-        rrrrs_e_1_r3_y = rrrrs_c_4*rrrrs_e_1_r2_y + rrrrs_e_1_r2_x*rrrrs_s_4
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        rrrrs_e_1_r3_x*(rrrrs_c_4*rrrrs_r_1_r2_y + rrrrs_r_1_r2_x*rrrrs_s_4) -
-            rrrrs_e_1_r3_y*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_h_3_in_axes2_x = (
+        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_27
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        inv_rrrrs_h_3_t_10 = 1.0/rrrrs_h_3_t_10
+        rrrrs_c_1 = -inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_9
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
-        # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
+        rrrrs_s_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_8
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        axis_x_rrrrs_axes4_x = (
-        axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y
-        )
-        axis_x_rrrrs_axes4_y = (
-        axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z
-        )
-        axis_x_rrrrs_axes4_z = (
-        axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
-        )
-        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
-        # (rrrrs-w_3) reciprocal vector 2
-        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
-        # (rrrrs-w_4) reciprocal vector 3
-        rrrrs_w_4_t = inv_rrrrs_platform_joint_offset_x*inv_rrrrs_r_3_r0_y*rrrrs_r_3_r0_x
-        # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
-        rrrrs_d_alpha_4_t = inv_rrrrs_v_1_z*rrrrs_e_1_r3_x
-        rrrrs_d_alpha_4_t_2 = inv_rrrrs_v_1_z*rrrrs_e_1_r3_y
-        # (rrrrs-D_1_4) inertia of joint 4 along joint 1
-        rrrrs_D_1_4 = rrrrs_J_4_xz*rrrrs_e_1_r3_x + rrrrs_J_4_yz*rrrrs_e_1_r3_y
-        # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        rrrrs_d_Gamma_4_t_2 = inv_rrrrs_v_1_z*rrrrs_D_1_4
-        rrrrs_d_Gamma_4_t_3 = rrrrs_d_Gamma_4_t*rrrrs_r_3_r0_x
-        rrrrs_d_Gamma_4_x = -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_J_4_zz - rrrrs_d_Gamma_4_t_3)
-        # (rrrrs-J_4) inertia tensor of link 4 about the connection point
-        rrrrs_J_4_t = rrrrs_J_4_xy*rrrrs_s_4
-        rrrrs__x = rrrrs_J_4_t + rrrrs_J_4_xx*rrrrs_c_4
-        rrrrs_J_4_t_2 = rrrrs_J_4_xy*rrrrs_c_4
-        rrrrs__x_2 = rrrrs_J_4_t_2 + rrrrs_J_4_yy*rrrrs_s_4
-        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-        rrrrs_Jc_3_xx = rrrrs_J_3_xx + rrrrs__x*rrrrs_c_4 + rrrrs__x_2*rrrrs_s_4
-        rrrrs_Jc_3_xy = rrrrs_J_3_xy + rrrrs__x_2*rrrrs_c_4 - rrrrs__x*rrrrs_s_4
-        rrrrs_Jc_3_xz = rrrrs_J_3_xz + rrrrs_J_4_xz*rrrrs_c_4 + rrrrs_J_4_yz*rrrrs_s_4
-        rrrrs_Jc_3_yy = (
-        rrrrs_J_3_yy + rrrrs_c_4*(rrrrs_J_4_yy*rrrrs_c_4 - rrrrs_J_4_t) - rrrrs_s_4*(rrrrs_J_4_t_2
-            - rrrrs_J_4_xx*rrrrs_s_4)
-        )
-        rrrrs_Jc_3_yz = rrrrs_J_3_yz + rrrrs_J_4_yz*rrrrs_c_4 - rrrrs_J_4_xz*rrrrs_s_4
-        # (rrrrs-L_c_3) moment about joint 3 that accelerates joint 3, per unit
-        rrrrs_L_c_3_r0_x = rrrrs_Jc_3_xz*rrrrs_c_3 - rrrrs_Jc_3_yz*rrrrs_s_3
-        rrrrs_L_c_3_r0_y = rrrrs_Jc_3_xz*rrrrs_s_3 + rrrrs_Jc_3_yz*rrrrs_c_3
-        # (rrrrs-P_c_3) force that accelerates joint 3, per unit
-        rrrrs_P_c_3_r0_x = -rrrrs_c_3*rrrrs_h_3_y - rrrrs_h_3_x*rrrrs_s_3
-        rrrrs_P_c_3_r0_y = rrrrs_c_3*rrrrs_h_3_x - rrrrs_h_3_y*rrrrs_s_3
-        # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
-        rrrrs_L_c_3_2_z = rrrrs_Jc_3_zz + rrrrs_P_c_3_r0_y*rrrrs_joint3_offset_x
-        # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrrs_d_Gamma_3_x = (
-        -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_Jc_3_zz - rrrrs_d_Gamma_4_t_3)
-        )
-        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-        rrrrs_Jc_3_t = rrrrs_Jc_3_xy*rrrrs_s_3
-        rrrrs__x_3 = rrrrs_Jc_3_xx*rrrrs_c_3 - rrrrs_Jc_3_t
-        rrrrs_Jc_3_t_2 = rrrrs_Jc_3_xy*rrrrs_c_3
-        rrrrs__x_4 = rrrrs_Jc_3_t_2 - rrrrs_Jc_3_yy*rrrrs_s_3
-        # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrrs_Jc_2_t_3 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_P_c_3_r0_y)
-        rrrrs_Jc_2_t_4 = 2.0*rrrrs_Jc_2_t_3
-        rrrrs_Jc_2_xy = (
-        rrrrs_J_2_xy + rrrrs_P_c_3_r0_x*rrrrs_joint3_offset_x + rrrrs__x_3*rrrrs_s_3 +
-            rrrrs__x_4*rrrrs_c_3
-        )
-        rrrrs__y = (
-        rrrrs_s_2*(rrrrs_s_2*(rrrrs_J_2_xx + rrrrs_Jc_2_t_4 + rrrrs__x_3*rrrrs_c_3 -
-            2.0*rrrrs_Jc_2_t_3 - rrrrs__x_4*rrrrs_s_3) - rrrrs_Jc_2_xy*rrrrs_c_2_t) -
-            rrrrs_c_2_t*(rrrrs_Jc_2_xy*rrrrs_s_2 - rrrrs_c_2_t*(rrrrs_J_2_yy + rrrrs_Jc_2_t_4 +
-            rrrrs_c_3*(rrrrs_Jc_3_t + rrrrs_Jc_3_yy*rrrrs_c_3) + rrrrs_s_3*(rrrrs_Jc_3_t_2 +
-            rrrrs_Jc_3_xx*rrrrs_s_3)))
-        )
-        # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrrrs_d_Gamma_1_z = (
-        inv_rrrrs_v_1_z*(rrrrs_J_1_xx + rrrrs__y) + rrrrs_e_1_r3_x*rrrrs_h_4_y -
-            rrrrs_e_1_r3_y*rrrrs_h_4_x
-        )
-        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_d_G_t_2 = inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_t_2
-        rrrrs_d_G_xx = rrrrs_d_Gamma_4_x*rrrrs_w_4_t - inv_rrrrs_r_3_r0_y*rrrrs_d_Gamma_3_x
-        rrrrs_d_G_xy = rrrrs_d_Gamma_4_y*rrrrs_w_4_t - inv_rrrrs_r_3_r0_y*rrrrs_d_Gamma_4_y
-        rrrrs_d_G_xz = (
-        rrrrs_d_Gamma_4_t_2*rrrrs_w_4_t -
-            inv_rrrrs_r_3_r0_y*inv_rrrrs_v_1_z*(rrrrs_L_c_3_r0_x*rrrrs_s_2 -
-            rrrrs_L_c_3_r0_y*rrrrs_c_2_t)
-        )
-        # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrrs_d_c_xx = rrrrs_h_4_y*(rrrrs_w_4_t - inv_rrrrs_r_3_r0_y) - rrrrs_d_G_xx
-        rrrrs_d_c_xy = rrrrs_d_phi_4_t - rrrrs_d_G_xy
-        rrrrs_d_c_xz = -rrrrs_d_G_xz - rrrrs_d_alpha_4_t_2*rrrrs_h_4_z
-        rrrrs_d_c_yz = rrrrs_d_alpha_4_t*rrrrs_h_4_z - rrrrs_d_G_t_2
-        # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrrrs_Q_t = rrrrs_d_c_xx - rrrrs_d_c_yy
-        rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
-        rrrrs_Q_t_3 = (
-        rrrrs_d_c_xx + inv_rrrrs_v_1_z*rrrrs_d_Gamma_1_z + rrrrs_d_alpha_4_t*rrrrs_h_4_y -
-            rrrrs_d_alpha_4_t_2*rrrrs_h_4_x
-        )
-        rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
-        rrrrs_Q_t_5 = (
-        axis_x_rrrrs_axes4_x*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_x*rrrrs_d_c_yz -
-            axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_2
-        )
-        rrrrs_Q_t_6 = (
-        axis_x_rrrrs_axes4_y*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_y*rrrrs_d_c_yz -
-            axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_2
-        )
-        rrrrs_Q_t_7 = (
-        axis_x_rrrrs_axes4_z*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_z*rrrrs_d_c_yz -
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_2
-        )
-        rrrrs_Q_t_8 = axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_x*rrrrs_d_c_xz
-        rrrrs_Q_t_9 = axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_y*rrrrs_d_c_xz
-        rrrrs_Q_t_10 = (
-        axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_z*rrrrs_d_c_xz
-        )
-        rrrrs_Q_t_11 = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_5 - axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_8
-        )
-        rrrrs_Q_t_12 = 2.0*rrrrs_Q_t_11 + rrrrs_d_c_xx
-        rrrrs_Q_t_13 = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_6 + axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_5 -
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_9 - axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_8
-        )
-        rrrrs_Q_t_14 = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_5 -
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_10 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_8
-        )
-        rrrrs_Q_t_15 = (
-        axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_6 - axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_9
-        )
-        rrrrs_Q_t_16 = 2.0*rrrrs_Q_t_15 + rrrrs_d_c_xx
-        rrrrs_Q_t_17 = (
-        axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_6 -
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_10 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_9
-        )
-        rrrrs_Q_t_18 = (
-        axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_7 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_10
-        )
-        rrrrs_Q_t_19 = 2.0*rrrrs_Q_t_18 + rrrrs_d_c_xx
-        # (M_ta) coupling block of M
-        rrrrs_M_ta_t = rrrrs_Q_t_13*rrrrs_q_in_base_z
-        rrrrs_M_ta_t_2 = rrrrs_Q_t_14*rrrrs_q_in_base_y
-        rrrrs_M_ta_t_3 = rrrrs_M_ta_t - rrrrs_M_ta_t_2
-        rrrrs_M_ta_t_4 = rrrrs_Q_t_12*rrrrs_q_in_base_z - rrrrs_Q_t_14*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_5 = rrrrs_Q_t_12*rrrrs_q_in_base_y - rrrrs_Q_t_13*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_6 = rrrrs_Q_t_16*rrrrs_q_in_base_z - rrrrs_Q_t_17*rrrrs_q_in_base_y
-        rrrrs_M_ta_t_7 = rrrrs_Q_t_17*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
-        rrrrs_M_ta_t_9 = rrrrs_Q_t_13*rrrrs_q_in_base_y - rrrrs_Q_t_16*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_10 = rrrrs_Q_t_17*rrrrs_q_in_base_z - rrrrs_Q_t_19*rrrrs_q_in_base_y
-        rrrrs_M_ta_t_11 = rrrrs_Q_t_14*rrrrs_q_in_base_z - rrrrs_Q_t_19*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2
-        # (M_aa) rotational block of M
-        rrrrs_M_aa_t = rrrrs_M_ta_t_6*rrrrs_q_in_base_z - rrrrs_M_ta_t_10*rrrrs_q_in_base_y
-        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_8*rrrrs_q_in_base_z - rrrrs_M_ta_t_11*rrrrs_q_in_base_y
-        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_in_base_y + rrrrs_M_ta_t_9*rrrrs_q_in_base_z
-        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_4*rrrrs_q_in_base_z - rrrrs_M_ta_t_11*rrrrs_q_in_base_x
-        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_in_base_x + rrrrs_M_ta_t_5*rrrrs_q_in_base_z
-        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_5*rrrrs_q_in_base_y - rrrrs_M_ta_t_9*rrrrs_q_in_base_x
         # (rrrrs-S_dot) velocity of the connection point
-        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
-        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
-        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_x - omega_x*rrrrs_q_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_y - omega_y*rrrrs_q_x
         rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
-        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
-        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
-        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
+        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_7 + rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t_2 = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_12*rrrrs_h_3_t_7 - rrrrs_h_3_t_14
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 + rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        )
+        # (rrrrs-w_1) reciprocal vector 1
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        rrrrs_w_1_x = axis_z_rrrrs_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_w_3_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_h_3_t_6*rrrrs_w_3_t - rrrrs_h_3_t_7*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_h_3_t_6*rrrrs_w_3_t_2 + rrrrs_h_3_t_7*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_s_1*rrrrs_w_3_t_3
+        rrrrs_w_3_t_6 = rrrrs_c_1*rrrrs_w_3_t_3
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_base_frame_xx*rrrrs_w_3_t_4 + rrrrs_base_frame_xz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_xy*rrrrs_w_3_t_5
+        )
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_base_frame_yx*rrrrs_w_3_t_4 + rrrrs_base_frame_yz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_yy*rrrrs_w_3_t_5
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_base_frame_zx*rrrrs_w_3_t_4 + rrrrs_base_frame_zz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_zy*rrrrs_w_3_t_5
+        )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
+        # (rrrrs-w_4) reciprocal vector 3
+        rrrrs_w_4_in_axes4_x = -rrrrs_r_3_in_axes4_x*rrrrs_w_3_in_axes4_x*rrrrs_w_4_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
-        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_y = (
-        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_y*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_z = (
-        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_z*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_in_axes4_y)
         )
-        # (rrrrs-qd_4) rate of joint 4
+        # (rrrrs-qd_1) rate of joint 1
+        rrrrs_qd_1 = (
+        rrrrs_w_1_in_axes4_z*(axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
+        )
+        # (rrrrs-qd_3) rate of joint 3
         rrrrs_qd_3 = (
-        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
+        # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
-        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
-        )
-        rrrrs_qd_1 = (
-        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
+        rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
-        # (rrrrs-omega_2) angular velocity of link 2
-        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
-        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
+        rrrrs_omega_1_in_axes2_x = rrrrs_h_3_t_7*rrrrs_qd_1
+        rrrrs_omega_1_in_axes2_y = rrrrs_h_3_t_6*rrrrs_qd_1
+        rrrrs_omega_1_t = (
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_x + rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_y
+        )
+        rrrrs_omega_1_t_2 = (
+        rrrrs_h_3_t_26*rrrrs_omega_1_in_axes2_y - rrrrs_h_3_t_27*rrrrs_omega_1_in_axes2_x
+        )
+        rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
+        rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
+        # (rrrrs-W_1) centripetal tensor of link 1
+        rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x
+        rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y
+        rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y
+        # (rrrrs-W_2) centripetal tensor of link 2
+        rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y
         # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
-        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
-        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
+        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
+        # (rrrrs-W_3) centripetal tensor of link 3
+        rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z
+        rrrrs_W_3_in_axes3_yz = rrrrs_omega_1_t_2*rrrrs_omega_3_in_axes3_z
         # (rrrrs-omega_4) angular velocity of link 4
-        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
-        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        rrrrs_zeta_4_y = rrrrs_omega_3_r0_x*rrrrs_qd_4
+        rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4
+        # (rrrrs-W_4) centripetal tensor of link 4
+        rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t
+        rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z
         # (rrrrs-u_1) centripetal acceleration of the connection point
         rrrrs_u_1_x = omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
         rrrrs_u_1_y = omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
         rrrrs_u_1_z = omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
-        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
-        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
-        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_x = rrrrs_omega_2_r0_y*rrrrs_qd_3
-        rrrrs_zeta_3_y = rrrrs_omega_2_r0_x*rrrrs_qd_3
-        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrrs_beta_3_x = -rrrrs_zeta_3_x - rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_s_3*rrrrs_zeta_2_y
-        rrrrs_beta_3_y = rrrrs_zeta_3_y + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
-        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
-        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
-        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_zeta_4_y
-        # (rrrrs-W_2) centripetal tensor of link 2
-        rrrrs_W_2_t = rrrrs_omega_1_t*rrrrs_omega_1_t
-        rrrrs_W_2_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
-        rrrrs_W_2_t_3 = rrrrs_yd_2*rrrrs_yd_2
-        rrrrs_W_2_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
-        # (rrrrs-W_3) centripetal tensor of link 3
-        rrrrs_W_3_t = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_x
-        rrrrs_W_3_t_2 = rrrrs_omega_2_r0_y*rrrrs_omega_2_r0_y
-        rrrrs_W_3_t_3 = rrrrs_omega_3_z*rrrrs_omega_3_z
-        rrrrs_W_3_xy = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_y
-        rrrrs_W_3_xz = rrrrs_omega_2_r0_x*rrrrs_omega_3_z
-        rrrrs_W_3_yz = rrrrs_omega_2_r0_y*rrrrs_omega_3_z
-        # (rrrrs-W_4) centripetal tensor of link 4
-        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
-        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
-        rrrrs_W_4_t_3 = rrrrs_omega_4_z*rrrrs_omega_4_z
-        rrrrs_W_4_xx = rrrrs_W_4_t_2 + rrrrs_W_4_t_3
-        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
-        rrrrs_W_4_xz = rrrrs_omega_3_r0_x*rrrrs_omega_4_z
-        rrrrs_W_4_yz = rrrrs_omega_3_r0_y*rrrrs_omega_4_z
-        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
-        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
-        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
-        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
-        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
-        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
-        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
-        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
-        rrrrs_bias_x = (
-        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
-            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_W_4_xx*rrrrs_platform_joint_offset_x -
-            rrrrs_bias_t_3*(rrrrs_W_3_t_3 + rrrrs_W_4_t_2) - rrrrs_d_3_r1_x*(rrrrs_W_2_t_3 +
-            rrrrs_W_4_t_2)
-        )
-        rrrrs_bias_y = (
-        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
-            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
-            rrrrs_bias_t_4*(rrrrs_W_3_t_3 + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t_3 +
-            rrrrs_W_4_t)
-        )
-        rrrrs_bias_z = (
-        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
-            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
-            rrrrs_beta_3_y*rrrrs_s_4) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_xz -
-            rrrrs_beta_4_y) + 2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
-            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
-        )
-        # (rrrrs-u_1) centripetal acceleration of the connection point
-        rrrrs_u_1_tip_x = (
+        rrrrs_u_1_in_axes4_x = (
         axis_x_rrrrs_axes4_x*rrrrs_u_1_x + axis_x_rrrrs_axes4_y*rrrrs_u_1_y +
             axis_x_rrrrs_axes4_z*rrrrs_u_1_z
         )
-        rrrrs_u_1_tip_y = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_u_1_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_u_1_y +
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_u_1_z
+        rrrrs_u_1_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*rrrrs_u_1_x + axis_y_rrrrs_axes4_y*rrrrs_u_1_y +
+            axis_y_rrrrs_axes4_z*rrrrs_u_1_z
         )
-        rrrrs_u_1_tip_z = (
-        axis_z_rrrrs_axes4_in_base_x*rrrrs_u_1_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_u_1_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_u_1_z
+        rrrrs_u_1_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*rrrrs_u_1_x + axis_z_rrrrs_axes4_y*rrrrs_u_1_y +
+            axis_z_rrrrs_axes4_z*rrrrs_u_1_z
+        )
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
+        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_in_axes3_x = (
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_27
+        )
+        rrrrs_beta_3_in_axes3_y = (
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_h_3_t_26 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_h_3_t_27
+        )
+        rrrrs_beta_3_in_axes4_y = (
+        rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
+        )
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_in_axes2_x = rrrrs_h_3_t_7*rrrrs_joint2_offset_x
+        rrrrs_d_2_in_axes2_y = rrrrs_h_3_t_6*rrrrs_joint2_offset_x
+        rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
+        rrrrs_bias_t_3 = rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_27
+        rrrrs_bias_t_4 = rrrrs_d_2_in_axes2_y*rrrrs_h_3_t_26 - rrrrs_d_2_in_axes2_x*rrrrs_h_3_t_27
+        rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
+        rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
+        rrrrs_bias_t_5 = rrrrs_h_3_t_26*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_h_3_t_27*rrrrs_joint3_offset_x
+        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_bias_in_axes4_x = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
+            rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_y = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
+            - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
+            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_z = (
+        rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
+            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
+            2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
         # (rrrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrrrs_rel_o_x = rrrrs_u_1_tip_x - rrrrs_bias_x
-        rrrrs_rel_o_y = rrrrs_u_1_tip_y - rrrrs_bias_y
-        rrrrs_rel_o_z = rrrrs_u_1_tip_z - rrrrs_bias_z
-        # (rrrrs-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
-        rrrrs_qdd_3_o = inv_rrrrs_r_3_r0_y*rrrrs_rel_o_x
-        rrrrs_qdd_1_o = inv_rrrrs_v_1_z*rrrrs_rel_o_z
+        rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x
+        rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y
+        rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z
+        # (rrrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*rrrrs_w_1_in_axes4_z
+        # (rrrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*rrrrs_w_3_in_axes4_x
         # (rrrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        rrrrs_alpha_1_o_t = rrrrs_qdd_1_o*rrrrs_s_2
-        rrrrs_alpha_1_o_t_2 = rrrrs_c_2_t*rrrrs_qdd_1_o
+        rrrrs_alpha_1_o_in_axes2_x = rrrrs_h_3_t_7*rrrrs_qdd_1_o
+        rrrrs_alpha_1_o_in_axes2_y = rrrrs_h_3_t_6*rrrrs_qdd_1_o
         # (rrrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrrrs_alpha_2_o_x = rrrrs_alpha_1_o_t - rrrrs_zeta_2_x
-        rrrrs_alpha_2_o_y = -rrrrs_alpha_1_o_t_2 - rrrrs_zeta_2_y
+        rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_o_in_axes2_x
+        rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y - rrrrs_W_2_in_axes2_xz
+        # (rrrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y
+        rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        rrrrs_alpha_3_o_x = (
-        rrrrs_alpha_2_o_x*rrrrs_c_3 + rrrrs_alpha_2_o_y*rrrrs_s_3 - rrrrs_zeta_3_x
+        rrrrs_alpha_3_o_in_axes3_x = (
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_26 +
+            rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_27
         )
-        rrrrs_alpha_3_o_y = (
-        rrrrs_zeta_3_y + rrrrs_alpha_2_o_y*rrrrs_c_3 - rrrrs_alpha_2_o_x*rrrrs_s_3
+        rrrrs_alpha_3_o_in_axes3_y = (
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_h_3_t_26 -
+            rrrrs_alpha_2_o_in_axes2_x*rrrrs_h_3_t_27
         )
+        # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
+        rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o
+        rrrrs_B_3_o_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_o_in_axes3_y
+        rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o
+        rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x
+        rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y
+        rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x
+        # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
+        rrrrs_d_alpha_4_in_axes4_xz = rrrrs_e_1_in_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_d_alpha_4_in_axes4_yz = rrrrs_e_1_in_axes4_y*rrrrs_w_1_in_axes4_z
         # (rrrrs-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
-        rrrrs_alpha_4_o_x = (
-        rrrrs_alpha_3_o_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_qd_4 - rrrrs_alpha_3_o_y*rrrrs_s_4
+        rrrrs_alpha_4_o_in_axes4_x = (
+        rrrrs_alpha_3_o_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
+            rrrrs_alpha_3_o_in_axes3_y*rrrrs_s_4_t
         )
-        rrrrs_alpha_4_o_y = (
-        rrrrs_alpha_3_o_x*rrrrs_s_4 + rrrrs_alpha_3_o_y*rrrrs_c_4 - rrrrs_zeta_4_y
+        rrrrs_alpha_4_o_in_axes4_y = (
+        rrrrs_alpha_3_o_in_axes3_x*rrrrs_s_4_t + rrrrs_alpha_3_o_in_axes3_y*rrrrs_c_4 -
+            rrrrs_zeta_4_t
         )
-        rrrrs_alpha_4_o_z = (
-        inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_o_y + rrrrs_qdd_3_o*rrrrs_r_3_r0_x) -
-            rrrrs_qdd_3_o
+        rrrrs_alpha_4_o_in_axes4_z = (
+        rrrrs_qdd_3_o + rrrrs_w_4_in_axes4_y*(rrrrs_rel_o_in_axes4_y -
+            rrrrs_qdd_3_o*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-B_4_o) remainder of the acceleration tensor of link 4
-        rrrrs_B_4_o_xy = rrrrs_W_4_xy - rrrrs_alpha_4_o_z
-        rrrrs_B_4_o_xz = rrrrs_W_4_xz + rrrrs_alpha_4_o_y
-        rrrrs_B_4_o_yx = rrrrs_W_4_xy + rrrrs_alpha_4_o_z
-        rrrrs_B_4_o_yz = rrrrs_W_4_yz - rrrrs_alpha_4_o_x
-        rrrrs_B_4_o_zx = rrrrs_W_4_xz - rrrrs_alpha_4_o_y
-        rrrrs_B_4_o_zy = rrrrs_W_4_yz + rrrrs_alpha_4_o_x
+        rrrrs_B_4_o_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_o_in_axes4_z
+        rrrrs_B_4_o_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_o_in_axes4_y
+        rrrrs_B_4_o_in_axes4_yx = rrrrs_W_1_in_axes4_xy + rrrrs_alpha_4_o_in_axes4_z
+        rrrrs_B_4_o_in_axes4_yz = rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_o_in_axes4_x
+        rrrrs_B_4_o_in_axes4_zx = rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_o_in_axes4_y
+        rrrrs_B_4_o_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_o_in_axes4_x
+        # (rrrrs-a_o_3) acceleration of the origin of joint 3
+        rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y
+        rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
+        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
+        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
+        rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
+        rrrrs_g_in_axes2_x = rrrrs_g_in_axes1_y*rrrrs_h_3_t_6 + rrrrs_g_in_axes1_z*rrrrs_h_3_t_7
+        rrrrs_g_in_axes2_y = rrrrs_g_in_axes1_z*rrrrs_h_3_t_6 - rrrrs_g_in_axes1_y*rrrrs_h_3_t_7
+        rrrrs_acc_3_o_in_axes3_x = (
+        rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_26 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_27 -
+            rrrrs_g_in_axes2_x*rrrrs_h_3_t_26 - rrrrs_g_in_axes2_y*rrrrs_h_3_t_27
+        )
+        rrrrs_acc_3_o_in_axes3_y = (
+        rrrrs_a_o_3_o_in_axes2_y*rrrrs_h_3_t_26 + rrrrs_g_in_axes2_x*rrrrs_h_3_t_27 -
+            rrrrs_a_o_3_in_axes2_x*rrrrs_h_3_t_27 - rrrrs_g_in_axes2_y*rrrrs_h_3_t_26
+        )
+        rrrrs_acc_3_o_in_axes3_z = (
+        rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_x
+        )
+        # (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_f_3_o_in_axes3_x = (
+        rrrrs_B_3_o_in_axes3_xy*rrrrs_h_3_in_spec3_y +
+            rrrrs_B_3_o_in_axes3_xz*rrrrs_h_3_in_spec3_z +
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 +
+            rrrrs_f_3_o_t_2)
+        )
+        rrrrs_f_3_o_in_axes3_y = (
+        rrrrs_B_3_o_in_axes3_yx*rrrrs_h_3_in_spec3_x +
+            rrrrs_B_3_o_in_axes3_yz*rrrrs_h_3_in_spec3_z +
+            rrrrs_acc_3_o_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 +
+            rrrrs_f_3_o_t)
+        )
+        rrrrs_f_3_o_in_axes3_z = (
+        rrrrs_B_3_o_in_axes3_zx*rrrrs_h_3_in_spec3_x +
+            rrrrs_B_3_o_in_axes3_zy*rrrrs_h_3_in_spec3_y +
+            rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
+            rrrrs_f_3_o_t_2)
+        )
         # (rrrrs-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        rrrrs_acc_4_o_x = (
-        rrrrs_u_1_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
+        rrrrs_acc_4_o_in_axes4_x = (
+        rrrrs_u_1_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
             axis_x_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_o_y = (
-        rrrrs_u_1_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
-            axis_y_rrrrs_axes4_in_base_y*gravity_y - axis_y_rrrrs_axes4_in_base_z*gravity_z
+        rrrrs_acc_4_o_in_axes4_y = (
+        rrrrs_u_1_in_axes4_y - axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y -
+            axis_y_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_o_z = (
-        rrrrs_u_1_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
-            axis_z_rrrrs_axes4_in_base_y*gravity_y - axis_z_rrrrs_axes4_in_base_z*gravity_z
+        rrrrs_acc_4_o_in_axes4_z = (
+        rrrrs_u_1_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y -
+            axis_z_rrrrs_axes4_z*gravity_z
+        )
+        # (rrrrs-D_1_4) inertia of joint 4 along joint 1
+        rrrrs_D_1_4 = (
+        rrrrs_J_4_in_spec4_xz*rrrrs_e_1_in_axes4_x + rrrrs_J_4_in_spec4_yz*rrrrs_e_1_in_axes4_y
+        )
+        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        rrrrs_Jc_3_t = rrrrs_J_4_in_spec4_xy*rrrrs_s_4_t
+        rrrrs_Jc_3_t_2 = rrrrs_Jc_3_t + rrrrs_J_4_in_spec4_xx*rrrrs_c_4
+        rrrrs_Jc_3_t_3 = rrrrs_J_4_in_spec4_xy*rrrrs_c_4
+        rrrrs_Jc_3_t_4 = rrrrs_Jc_3_t_3 + rrrrs_J_4_in_spec4_yy*rrrrs_s_4_t
+        rrrrs_Jc_3_in_axes3_xx = (
+        rrrrs_J_3_in_spec3_xx + rrrrs_Jc_3_t_2*rrrrs_c_4 + rrrrs_Jc_3_t_4*rrrrs_s_4_t
+        )
+        rrrrs_Jc_3_in_axes3_xy = (
+        rrrrs_J_3_in_spec3_xy + rrrrs_Jc_3_t_4*rrrrs_c_4 - rrrrs_Jc_3_t_2*rrrrs_s_4_t
+        )
+        rrrrs_Jc_3_in_axes3_xz = (
+        rrrrs_J_3_in_spec3_xz + rrrrs_J_4_in_spec4_xz*rrrrs_c_4 +
+            rrrrs_J_4_in_spec4_yz*rrrrs_s_4_t
+        )
+        rrrrs_Jc_3_in_axes3_yy = (
+        rrrrs_J_3_in_spec3_yy + rrrrs_c_4*(rrrrs_J_4_in_spec4_yy*rrrrs_c_4 - rrrrs_Jc_3_t) -
+            rrrrs_s_4_t*(rrrrs_Jc_3_t_3 - rrrrs_J_4_in_spec4_xx*rrrrs_s_4_t)
+        )
+        rrrrs_Jc_3_in_axes3_yz = (
+        rrrrs_J_3_in_spec3_yz + rrrrs_J_4_in_spec4_yz*rrrrs_c_4 -
+            rrrrs_J_4_in_spec4_xz*rrrrs_s_4_t
+        )
+        rrrrs_Jc_3_in_axes2_xz = (
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 - rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_27
+        )
+        rrrrs_Jc_3_in_axes2_yz = (
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_27 + rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26
+        )
+        # (rrrrs-P_c_3) force that accelerates joint 3, per unit
+        rrrrs_P_c_3_in_axes2_x = (
+        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_27 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
+        )
+        # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
+        rrrrs_L_c_3_2_in_axes2_z = (
+        rrrrs_Jc_3_in_axes3_zz + rrrrs_h_3_in_axes2_x*rrrrs_joint3_offset_x
+        )
+        # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_27
+        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26 - rrrrs_Jc_2_t_2
+        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26
+        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_27
+        rrrrs_Jc_2_t_6 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_h_3_in_axes2_x)
+        rrrrs_Jc_2_t_7 = 2.0*rrrrs_Jc_2_t_6
+        rrrrs_Jc_2_in_axes2_xy = (
+        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_27 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_26 +
+            rrrrs_P_c_3_in_axes2_x*rrrrs_joint3_offset_x
+        )
+        rrrrs_Jc_2_in_axes1_zz = (
+        rrrrs_h_3_t_6*(rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_7 + rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_yy
+            + rrrrs_Jc_2_t_7 + rrrrs_h_3_t_26*(rrrrs_Jc_2_t_2 +
+            rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26) + rrrrs_h_3_t_27*(rrrrs_Jc_2_t_4 +
+            rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27))) +
+            rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_6 +
+            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 + rrrrs_Jc_2_t_3*rrrrs_h_3_t_26
+            - 2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_27))
         )
         # (rrrrs-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        rrrrs_mu_4_o_x = (
-        rrrrs_B_4_o_yx*rrrrs_J_4_xz + rrrrs_B_4_o_zy*rrrrs_Sigma_4_yy +
-            rrrrs_J_4_yz*(rrrrs_W_4_t_2 - rrrrs_W_4_t_3) + rrrrs_acc_4_o_z*rrrrs_h_4_y -
-            rrrrs_B_4_o_yz*rrrrs_Sigma_4_zz - rrrrs_B_4_o_zx*rrrrs_J_4_xy -
-            rrrrs_acc_4_o_y*rrrrs_h_4_z
+        rrrrs_mu_4_o_in_axes4_x = (
+        rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
+            rrrrs_B_4_o_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
+            rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
+            rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_y -
+            rrrrs_B_4_o_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
+            rrrrs_B_4_o_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
+            rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_z
         )
-        rrrrs_mu_4_o_y = (
-        rrrrs_B_4_o_xz*rrrrs_Sigma_4_zz + rrrrs_B_4_o_zy*rrrrs_J_4_xy +
-            rrrrs_acc_4_o_x*rrrrs_h_4_z - rrrrs_B_4_o_xy*rrrrs_J_4_yz -
-            rrrrs_B_4_o_zx*rrrrs_Sigma_4_xx - rrrrs_J_4_xz*(rrrrs_W_4_t - rrrrs_W_4_t_3) -
-            rrrrs_acc_4_o_z*rrrrs_h_4_x
+        rrrrs_mu_4_o_in_axes4_y = (
+        rrrrs_B_4_o_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
+            rrrrs_B_4_o_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
+            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_z -
+            rrrrs_B_4_o_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
+            rrrrs_B_4_o_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t
+            - rrrrs_W_4_t) - rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_x
         )
-        rrrrs_mu_4_o_z = (
-        rrrrs_B_4_o_xz*rrrrs_J_4_yz + rrrrs_B_4_o_yx*rrrrs_Sigma_4_xx + rrrrs_J_4_xy*(rrrrs_W_4_t
-            - rrrrs_W_4_t_2) + rrrrs_acc_4_o_y*rrrrs_h_4_x - rrrrs_B_4_o_xy*rrrrs_Sigma_4_yy -
-            rrrrs_B_4_o_yz*rrrrs_J_4_xz - rrrrs_acc_4_o_x*rrrrs_h_4_y
+        rrrrs_mu_4_o_in_axes4_z = (
+        rrrrs_B_4_o_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
+            rrrrs_B_4_o_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t
+            - rrrrs_W_1_t_2) + rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_o_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
+            rrrrs_B_4_o_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
+            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_y
         )
-        # (rrrrs-B_2_o) remainder of the acceleration tensor of link 2
-        rrrrs_B_2_o_zx = rrrrs_zeta_2_y - rrrrs_alpha_2_o_y
-        rrrrs_B_2_o_zy = rrrrs_alpha_2_o_x - rrrrs_zeta_2_x
-        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
-        rrrrs_a_o_3_o_t = rrrrs_joint3_offset_x*(rrrrs_W_2_t_2 + rrrrs_W_2_t_3)
-        rrrrs_a_o_3_o_t_2 = rrrrs_W_2_xy*rrrrs_joint3_offset_x
-        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rrrrs_g_r1_x = rrrrs_g_r0_y*rrrrs_s_1 - rrrrs_c_1*rrrrs_g_r0_x
-        rrrrs_g_r1_y = -rrrrs_c_1*rrrrs_g_r0_y - rrrrs_g_r0_x*rrrrs_s_1
-        rrrrs_g_r3_x = rrrrs_g_r0_z*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_g_r1_y
-        rrrrs_g_r3_y = -rrrrs_c_2_t*rrrrs_g_r0_z - rrrrs_g_r1_y*rrrrs_s_2
-        rrrrs_acc_3_o_x = (
-        -rrrrs_a_o_3_o_t*rrrrs_c_3 - rrrrs_a_o_3_o_t_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_r3_x -
-            rrrrs_g_r3_y*rrrrs_s_3
-        )
-        rrrrs_acc_3_o_y = (
-        rrrrs_a_o_3_o_t*rrrrs_s_3 + rrrrs_g_r3_x*rrrrs_s_3 - rrrrs_a_o_3_o_t_2*rrrrs_c_3 -
-            rrrrs_c_3*rrrrs_g_r3_y
-        )
-        rrrrs_acc_3_o_z = rrrrs_B_2_o_zx*rrrrs_joint3_offset_x - rrrrs_g_r1_x
-        # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
-        rrrrs_B_3_o_xy = rrrrs_W_3_xy + rrrrs_qdd_3_o
-        rrrrs_B_3_o_xz = rrrrs_W_3_xz + rrrrs_alpha_3_o_y
-        rrrrs_B_3_o_yx = rrrrs_W_3_xy - rrrrs_qdd_3_o
-        rrrrs_B_3_o_yz = rrrrs_W_3_yz - rrrrs_alpha_3_o_x
-        rrrrs_B_3_o_zx = rrrrs_W_3_xz - rrrrs_alpha_3_o_y
-        rrrrs_B_3_o_zy = rrrrs_W_3_yz + rrrrs_alpha_3_o_x
-        # (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        rrrrs_mu_3_o_x = (
-        rrrrs_B_3_o_yx*rrrrs_J_3_xz + rrrrs_B_3_o_zy*rrrrs_Sigma_3_yy +
-            rrrrs_J_3_yz*(rrrrs_W_3_t_2 - rrrrs_W_3_t_3) + rrrrs_acc_3_o_z*rrrrs_h_3_y -
-            rrrrs_B_3_o_yz*rrrrs_Sigma_3_zz - rrrrs_B_3_o_zx*rrrrs_J_3_xy -
-            rrrrs_acc_3_o_y*rrrrs_h_3_z
-        )
-        rrrrs_mu_3_o_y = (
-        rrrrs_B_3_o_xz*rrrrs_Sigma_3_zz + rrrrs_B_3_o_zy*rrrrs_J_3_xy +
-            rrrrs_acc_3_o_x*rrrrs_h_3_z - rrrrs_B_3_o_xy*rrrrs_J_3_yz -
-            rrrrs_B_3_o_zx*rrrrs_Sigma_3_xx - rrrrs_J_3_xz*(rrrrs_W_3_t - rrrrs_W_3_t_3) -
-            rrrrs_acc_3_o_z*rrrrs_h_3_x
-        )
-        rrrrs_mu_3_o_z = (
-        rrrrs_B_3_o_xz*rrrrs_J_3_yz + rrrrs_B_3_o_yx*rrrrs_Sigma_3_xx + rrrrs_J_3_xy*(rrrrs_W_3_t
-            - rrrrs_W_3_t_2) + rrrrs_acc_3_o_y*rrrrs_h_3_x - rrrrs_B_3_o_xy*rrrrs_Sigma_3_yy -
-            rrrrs_B_3_o_yz*rrrrs_J_3_xz - rrrrs_acc_3_o_x*rrrrs_h_3_y
-        )
-        # (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        rrrrs_N_3_o_x = rrrrs_mu_3_o_x + rrrrs_c_4*rrrrs_mu_4_o_x + rrrrs_mu_4_o_y*rrrrs_s_4
-        rrrrs_N_3_o_y = rrrrs_mu_3_o_y + rrrrs_c_4*rrrrs_mu_4_o_y - rrrrs_mu_4_o_x*rrrrs_s_4
-        rrrrs_N_3_o_z = rrrrs_mu_3_o_z + rrrrs_mu_4_o_z
-        # (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
-        rrrrs_f_3_o_x = (
-        rrrrs_B_3_o_xy*rrrrs_h_3_y + rrrrs_B_3_o_xz*rrrrs_h_3_z + rrrrs_acc_3_o_x*rrrrs_link3_mass
-            - rrrrs_h_3_x*(rrrrs_W_3_t_2 + rrrrs_W_3_t_3)
-        )
-        rrrrs_f_3_o_y = (
-        rrrrs_B_3_o_yx*rrrrs_h_3_x + rrrrs_B_3_o_yz*rrrrs_h_3_z + rrrrs_acc_3_o_y*rrrrs_link3_mass
-            - rrrrs_h_3_y*(rrrrs_W_3_t + rrrrs_W_3_t_3)
-        )
-        rrrrs_f_3_o_z = (
-        rrrrs_B_3_o_zx*rrrrs_h_3_x + rrrrs_B_3_o_zy*rrrrs_h_3_y + rrrrs_acc_3_o_z*rrrrs_link3_mass
-            - rrrrs_h_3_z*(rrrrs_W_3_t + rrrrs_W_3_t_2)
-        )
-        # (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrrrs_mu_2_o_x = (
-        rrrrs_B_2_o_zy*rrrrs_Sigma_2_yy + rrrrs_J_2_yz*(rrrrs_W_2_t_2 - rrrrs_W_2_t_3) +
-            rrrrs_Sigma_2_zz*rrrrs_alpha_1_o_t + rrrrs_g_r3_y*rrrrs_h_2_z -
-            rrrrs_B_2_o_zx*rrrrs_J_2_xy - rrrrs_J_2_xz*rrrrs_W_2_xy - rrrrs_g_r1_x*rrrrs_h_2_y
-        )
-        rrrrs_mu_2_o_y = (
-        rrrrs_B_2_o_zy*rrrrs_J_2_xy + rrrrs_J_2_yz*rrrrs_W_2_xy + rrrrs_g_r1_x*rrrrs_h_2_x -
-            rrrrs_B_2_o_zx*rrrrs_Sigma_2_xx - rrrrs_J_2_xz*(rrrrs_W_2_t - rrrrs_W_2_t_3) -
-            rrrrs_Sigma_2_zz*rrrrs_alpha_1_o_t_2 - rrrrs_g_r3_x*rrrrs_h_2_z
-        )
-        rrrrs_mu_2_o_z = (
-        rrrrs_J_2_xy*(rrrrs_W_2_t - rrrrs_W_2_t_2) + rrrrs_J_2_xz*rrrrs_alpha_1_o_t +
-            rrrrs_Sigma_2_yy*rrrrs_W_2_xy + rrrrs_g_r3_x*rrrrs_h_2_y -
-            rrrrs_J_2_yz*rrrrs_alpha_1_o_t_2 - rrrrs_Sigma_2_xx*rrrrs_W_2_xy -
-            rrrrs_g_r3_y*rrrrs_h_2_x
-        )
-        # (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrrs_N_2_o_x = rrrrs_mu_2_o_x + rrrrs_N_3_o_x*rrrrs_c_3 - rrrrs_N_3_o_y*rrrrs_s_3
-        rrrrs_N_2_o_y = (
-        rrrrs_mu_2_o_y + rrrrs_N_3_o_x*rrrrs_s_3 + rrrrs_N_3_o_y*rrrrs_c_3 -
-            rrrrs_f_3_o_z*rrrrs_joint3_offset_x
-        )
-        rrrrs_N_2_o_z = (
-        rrrrs_N_3_o_z + rrrrs_mu_2_o_z + rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_y +
-            rrrrs_f_3_o_x*rrrrs_s_3)
-        )
-        # (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrrrs_mu_1_o_z = (
-        rrrrs_J_1_xx*rrrrs_qdd_1_o - rrrrs_g_r1_x*rrrrs_h_1_y - rrrrs_g_r1_y*rrrrs_h_1_z
-        )
-        # (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrrs_N_1_o_z = rrrrs_mu_1_o_z + rrrrs_N_2_o_x*rrrrs_s_2 - rrrrs_N_2_o_y*rrrrs_c_2_t
-        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_G_o_t = inv_rrrrs_platform_joint_offset_x*rrrrs_mu_4_o_z
-        rrrrs_G_o_t_2 = inv_rrrrs_r_3_r0_y*(rrrrs_G_o_t*rrrrs_r_3_r0_x - rrrrs_N_3_o_z)
-        # (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrrs_c_o_x = (
-        rrrrs_W_4_xx*rrrrs_h_4_x - rrrrs_G_o_t_2 - rrrrs_B_4_o_xy*rrrrs_h_4_y -
-            rrrrs_B_4_o_xz*rrrrs_h_4_z
-        )
-        rrrrs_c_o_y = (
-        rrrrs_h_4_y*(rrrrs_W_4_t + rrrrs_W_4_t_3) - rrrrs_G_o_t - rrrrs_B_4_o_yx*rrrrs_h_4_x -
-            rrrrs_B_4_o_yz*rrrrs_h_4_z
-        )
-        rrrrs_c_o_z = (
-        rrrrs_h_4_z*(rrrrs_W_4_t + rrrrs_W_4_t_2) - inv_rrrrs_v_1_z*rrrrs_N_1_o_z -
-            rrrrs_B_4_o_zx*rrrrs_h_4_x - rrrrs_B_4_o_zy*rrrrs_h_4_y
-        )
-        # (rrrrs-U) velocity and gravity terms of the leg force
-        rrrrs_U_in_base_x = (
-        -axis_x_rrrrs_axes4_x*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_x*rrrrs_c_o_y -
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_c_o_z
-        )
-        rrrrs_U_in_base_y = (
-        -axis_x_rrrrs_axes4_y*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_y*rrrrs_c_o_y -
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_c_o_z
-        )
-        rrrrs_U_in_base_z = (
-        -axis_x_rrrrs_axes4_z*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_z*rrrrs_c_o_y -
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_c_o_z
-        )
-        # (Z_a) rotational part of Z
-        rrrrs_Z_a_t = rrrrs_U_in_base_z*rrrrs_q_in_base_y - rrrrs_U_in_base_y*rrrrs_q_in_base_z
-        rrrrs_Z_a_t_2 = rrrrs_U_in_base_x*rrrrs_q_in_base_z - rrrrs_U_in_base_z*rrrrs_q_in_base_x
-        rrrrs_Z_a_t_3 = rrrrs_U_in_base_y*rrrrs_q_in_base_x - rrrrs_U_in_base_x*rrrrs_q_in_base_y
-        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        rrrrs_P_2_o_t = rrrrs_G_o_t_2*rrrrs_r_2_r1_y - rrrrs_G_o_t*rrrrs_r_2_r1_x
-        rrrrs_P_2_o = rrrrs_N_2_o_z + rrrrs_P_2_o_t
-        # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrrrs_d_Gamma_2_x = (
-        -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_L_c_3_2_z - rrrrs_d_Gamma_4_t_3)
-        )
-        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        rrrrs_d_P_2_x = (
-        rrrrs_d_Gamma_2_x + rrrrs_d_G_xx*rrrrs_r_2_r1_y -
-            inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_x*rrrrs_r_2_r1_x
-        )
-        rrrrs_d_P_2_y = (
-        rrrrs_d_Gamma_4_y + rrrrs_d_G_xy*rrrrs_r_2_r1_y - rrrrs_d_G_t*rrrrs_r_2_r1_x
-        )
-        rrrrs_d_P_2_z = (
-        inv_rrrrs_v_1_z*(rrrrs_s_2*(rrrrs_J_2_xz + rrrrs_L_c_3_r0_x - rrrrs_Jc_2_t_2) -
-            rrrrs_c_2_t*(rrrrs_J_2_yz + rrrrs_L_c_3_r0_y)) + rrrrs_d_G_xz*rrrrs_r_2_r1_y -
-            rrrrs_d_G_t_2*rrrrs_r_2_r1_x
-        )
-        rrrrs_d_P_2_in_base_x = (
-        axis_x_rrrrs_axes4_x*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_x*rrrrs_d_P_2_y +
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_d_P_2_z
-        )
-        rrrrs_d_P_2_in_base_y = (
-        axis_x_rrrrs_axes4_y*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_d_P_2_y +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_d_P_2_z
-        )
-        rrrrs_d_P_2_in_base_z = (
-        axis_x_rrrrs_axes4_z*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_z*rrrrs_d_P_2_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_d_P_2_z
-        )
-        # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
-        rrrrs_M_ya_2_x = (
-        rrrrs_d_P_2_in_base_z*rrrrs_q_in_base_y - rrrrs_d_P_2_in_base_y*rrrrs_q_in_base_z
-        )
-        rrrrs_M_ya_2_y = (
-        rrrrs_d_P_2_in_base_x*rrrrs_q_in_base_z - rrrrs_d_P_2_in_base_z*rrrrs_q_in_base_x
-        )
-        rrrrs_M_ya_2_z = (
-        rrrrs_d_P_2_in_base_y*rrrrs_q_in_base_x - rrrrs_d_P_2_in_base_x*rrrrs_q_in_base_y
-        )
-        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
-        rrrrs_dy_2_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y
-        # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrrrs_dy_2_Gamma_2_t = (
-        inv_rrrrs_platform_joint_offset_x*rrrrs_J_4_zz*(rrrrs_dy_2_qdd_3*rrrrs_r_3_r0_x -
-            rrrrs_r_2_r1_x)
-        )
-        rrrrs_dy_2_Gamma_2 = (
-        rrrrs_J_2_zz + rrrrs_Jc_2_t_4 + rrrrs_Jc_3_zz + rrrrs_dy_2_Gamma_2_t -
-            rrrrs_L_c_3_2_z*rrrrs_dy_2_qdd_3
+        # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*rrrrs_w_1_in_axes4_z
+        rrrrs_d_Gamma_4_t_2 = rrrrs_d_Gamma_4_t*rrrrs_r_3_in_axes4_x
+        rrrrs_d_Gamma_4_in_axes4_x = (
+        rrrrs_w_3_in_axes4_x*(rrrrs_J_4_in_spec4_zz - rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y
         )
         # (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        rrrrs_dy_2_Gamma_4 = rrrrs_J_4_zz + rrrrs_dy_2_Gamma_2_t - rrrrs_J_4_zz*rrrrs_dy_2_qdd_3
+        rrrrs_dy_2_Gamma_4_t = (
+        rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(-rrrrs_r_2_in_axes4_x -
+            rrrrs_r_3_in_axes4_x*rrrrs_w_3_t_7)
+        )
+        rrrrs_dy_2_Gamma_4 = (
+        rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t + rrrrs_J_4_in_spec4_zz*rrrrs_w_3_t_7
+        )
+        # (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        rrrrs_mu_3_o_in_axes3_x = (
+        rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
+            rrrrs_B_3_o_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
+            rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
+            rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_y -
+            rrrrs_B_3_o_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
+            rrrrs_B_3_o_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
+            rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_z
+        )
+        rrrrs_mu_3_o_in_axes3_y = (
+        rrrrs_B_3_o_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
+            rrrrs_B_3_o_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_z -
+            rrrrs_B_3_o_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
+            rrrrs_B_3_o_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx -
+            rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
+            rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_x
+        )
+        rrrrs_mu_3_o_in_axes3_z = (
+        rrrrs_B_3_o_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
+            rrrrs_B_3_o_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx +
+            rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
+            rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_x -
+            rrrrs_B_3_o_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
+            rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_y
+        )
+        # (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+        rrrrs_N_3_o_in_axes3_x = (
+        rrrrs_mu_3_o_in_axes3_x + rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x +
+            rrrrs_mu_4_o_in_axes4_y*rrrrs_s_4_t
+        )
+        rrrrs_N_3_o_in_axes3_y = (
+        rrrrs_mu_3_o_in_axes3_y + rrrrs_c_4*rrrrs_mu_4_o_in_axes4_y -
+            rrrrs_mu_4_o_in_axes4_x*rrrrs_s_4_t
+        )
+        rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z
+        # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrrs_d_Gamma_3_in_axes4_x = (
+        rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes3_zz - rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y
+        )
         # (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_3 = (
-        rrrrs_L_c_3_2_z + rrrrs_dy_2_Gamma_2_t - rrrrs_Jc_3_zz*rrrrs_dy_2_qdd_3
+        rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t + rrrrs_Jc_3_in_axes3_zz*rrrrs_w_3_t_7
+        )
+        # (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
+        rrrrs_mu_2_o_in_axes2_x = (
+        rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
+            rrrrs_J_2_in_spec2_xz*rrrrs_W_2_in_axes2_xy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t -
+            rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_x +
+            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z -
+            rrrrs_B_2_o_in_axes2_zx*rrrrs_J_2_in_spec2_xy -
+            rrrrs_g_in_axes1_x*rrrrs_h_2_in_spec2_y
+        )
+        rrrrs_mu_2_o_in_axes2_y = (
+        rrrrs_B_2_o_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_y +
+            rrrrs_g_in_axes1_x*rrrrs_h_2_in_spec2_x -
+            rrrrs_B_2_o_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
+            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_o_t - rrrrs_bias_t) -
+            rrrrs_J_2_in_spec2_yz*rrrrs_W_2_in_axes2_xy - rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z
+        )
+        rrrrs_mu_2_o_in_axes2_z = (
+        rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_o_t - rrrrs_a_o_3_t) +
+            rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_o_in_axes2_x +
+            rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_o_in_axes2_y +
+            rrrrs_Sigma_2_in_axes2_xx*rrrrs_W_2_in_axes2_xy +
+            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
+            rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
+            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x
+        )
+        # (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        rrrrs_N_2_o_in_axes2_x = (
+        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_26 -
+            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_27
+        )
+        rrrrs_N_2_o_in_axes2_y = (
+        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_h_3_t_27 +
+            rrrrs_N_3_o_in_axes3_y*rrrrs_h_3_t_26 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
+        )
+        rrrrs_N_2_o_in_axes2_z = (
+        rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
+            rrrrs_joint3_offset_x*(rrrrs_f_3_o_in_axes3_x*rrrrs_h_3_t_27 +
+            rrrrs_f_3_o_in_axes3_y*rrrrs_h_3_t_26)
+        )
+        # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrrs_d_Gamma_2_in_axes4_x = (
+        rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes2_z - rrrrs_d_Gamma_4_t_2) -
+            rrrrs_h_4_in_spec4_y
+        )
+        # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrrs_dy_2_Gamma_2 = (
+        rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
+            rrrrs_L_c_3_2_in_axes2_z*rrrrs_w_3_t_7
+        )
+        # (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+        rrrrs_mu_1_o_in_axes1_z = (
+        rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o - rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_y -
+            rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_z
+        )
+        # (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+        rrrrs_N_1_o_in_axes1_z = (
+        rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_h_3_t_7 +
+            rrrrs_N_2_o_in_axes2_y*rrrrs_h_3_t_6
+        )
+        # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrrs_d_Gamma_1_in_axes4_z = (
+        rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y + rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx +
+            rrrrs_Jc_2_in_axes1_zz) - rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x
+        )
+        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y
+        rrrrs_d_G_in_axes4_xx = (
+        rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
+            rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x
+        )
+        rrrrs_d_G_in_axes4_xy = (
+        rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_3_in_axes4_x +
+            rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x
+        )
+        rrrrs_d_G_in_axes4_xz = (
+        rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
+            rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_7 +
+            rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_6)
         )
         # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_dy_2_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_dy_2_Gamma_4
+        rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
+        # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
+        rrrrs_G_o_in_axes4_x = (
+        -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
+        )
+        # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_d_c_in_axes4_xx = (
+        rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x + rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx
+        )
+        rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy
+        rrrrs_d_c_in_axes4_xz = (
+        -rrrrs_d_G_in_axes4_xz - rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_z
+        )
+        rrrrs_d_c_in_axes4_yz = (
+        rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_z - rrrrs_d_G_in_axes4_yz
+        )
+        # (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_o_in_axes4_x = (
+        rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_o_in_axes4_x -
+            rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
+            rrrrs_B_4_o_in_axes4_xz*rrrrs_h_4_in_spec4_z
+        )
+        rrrrs_c_o_in_axes4_y = (
+        rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) - rrrrs_G_o_in_axes4_y -
+            rrrrs_B_4_o_in_axes4_yx*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_o_in_axes4_yz*rrrrs_h_4_in_spec4_z
+        )
+        rrrrs_c_o_in_axes4_z = (
+        rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
+            rrrrs_B_4_o_in_axes4_zx*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_o_in_axes4_zy*rrrrs_h_4_in_spec4_y -
+            rrrrs_N_1_o_in_axes1_z*rrrrs_w_1_in_axes4_z
+        )
+        # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrrs_Q_t = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_yy
+        rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
+        rrrrs_Q_t_3 = (
+        rrrrs_d_c_in_axes4_xx + rrrrs_d_Gamma_1_in_axes4_z*rrrrs_w_1_in_axes4_z +
+            rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_y -
+            rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_x
+        )
+        rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
+        rrrrs_Q_t_5 = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_x*rrrrs_d_c_in_axes4_yz -
+            axis_y_rrrrs_axes4_x*rrrrs_Q_t_2
+        )
+        rrrrs_Q_t_6 = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_y*rrrrs_d_c_in_axes4_yz -
+            axis_y_rrrrs_axes4_y*rrrrs_Q_t_2
+        )
+        rrrrs_Q_t_7 = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_z*rrrrs_d_c_in_axes4_yz -
+            axis_y_rrrrs_axes4_z*rrrrs_Q_t_2
+        )
+        rrrrs_Q_t_8 = (
+        axis_z_rrrrs_axes4_x*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xz
+        )
+        rrrrs_Q_t_9 = (
+        axis_z_rrrrs_axes4_y*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xz
+        )
+        rrrrs_Q_t_10 = (
+        axis_z_rrrrs_axes4_z*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xz
+        )
+        rrrrs_Q_t_11 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_5 - axis_z_rrrrs_axes4_x*rrrrs_Q_t_8
+        rrrrs_Q_xx = -2.0*rrrrs_Q_t_11 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_xy = (
+        axis_z_rrrrs_axes4_x*rrrrs_Q_t_9 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_8 -
+            axis_y_rrrrs_axes4_x*rrrrs_Q_t_6 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_5
+        )
+        rrrrs_Q_xz = (
+        axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_8 -
+            axis_y_rrrrs_axes4_x*rrrrs_Q_t_7 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_5
+        )
+        rrrrs_Q_t_12 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_6 - axis_z_rrrrs_axes4_y*rrrrs_Q_t_9
+        rrrrs_Q_yy = -2.0*rrrrs_Q_t_12 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_yz = (
+        axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_9 -
+            axis_y_rrrrs_axes4_y*rrrrs_Q_t_7 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_6
+        )
+        rrrrs_Q_t_13 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_7 - axis_z_rrrrs_axes4_z*rrrrs_Q_t_10
+        rrrrs_Q_zz = -2.0*rrrrs_Q_t_13 - rrrrs_d_c_in_axes4_xx
+        # (rrrrs-U) velocity and gravity terms of the leg force
+        rrrrs_U_x = (
+        -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
+            axis_z_rrrrs_axes4_x*rrrrs_c_o_in_axes4_z
+        )
+        rrrrs_U_y = (
+        -axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
+            axis_z_rrrrs_axes4_y*rrrrs_c_o_in_axes4_z
+        )
+        rrrrs_U_z = (
+        -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
+            axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z
+        )
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_d_P_2_in_axes4_x = (
+        rrrrs_d_Gamma_2_in_axes4_x + rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
+            rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
+        )
+        rrrrs_d_P_2_in_axes4_y = (
+        rrrrs_d_Gamma_4_in_axes4_y + rrrrs_d_G_in_axes4_xy*rrrrs_r_2_in_axes4_y -
+            rrrrs_d_G_in_axes4_yy*rrrrs_r_2_in_axes4_x
+        )
+        rrrrs_d_P_2_in_axes4_z = (
+        rrrrs_d_G_in_axes4_xz*rrrrs_r_2_in_axes4_y +
+            rrrrs_w_1_in_axes4_z*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz) +
+            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz - rrrrs_d_P_2_t)) -
+            rrrrs_d_G_in_axes4_yz*rrrrs_r_2_in_axes4_x
+        )
+        rrrrs_d_P_2_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_y
+            + axis_z_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_z
+        )
+        rrrrs_d_P_2_y = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_y
+            + axis_z_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_z
+        )
+        rrrrs_d_P_2_z = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_y
+            + axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z
+        )
         # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
         rrrrs_dy_2_P_2_t = (
-        inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y*(rrrrs_dy_2_G_t*rrrrs_r_3_r0_x - rrrrs_dy_2_Gamma_3) -
-            rrrrs_dy_2_G_t*rrrrs_r_2_r1_x
+        rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x +
+            rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
+            - rrrrs_dy_2_Gamma_3)
         )
-        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 + rrrrs_dy_2_P_2_t
-        # (rrrrs-w_1) reciprocal vector 1
-        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
+        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_P_2_o_t = (
+        rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x
+        )
+        rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t
+        # (M_ta) coupling block of M
+        rrrrs_M_ta_t = -rrrrs_Q_xy*rrrrs_q_z
+        rrrrs_M_ta_t_2 = rrrrs_Q_xz*rrrrs_q_y
+        rrrrs_M_ta_t_3 = rrrrs_M_ta_t + rrrrs_M_ta_t_2
+        rrrrs_M_ta_t_4 = rrrrs_Q_xz*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_z
+        rrrrs_M_ta_t_5 = rrrrs_Q_xy*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_y
+        rrrrs_M_ta_t_6 = rrrrs_Q_yz*rrrrs_q_y - rrrrs_Q_yy*rrrrs_q_z
+        rrrrs_M_ta_t_7 = -rrrrs_Q_yz*rrrrs_q_x
+        rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
+        rrrrs_M_ta_t_9 = rrrrs_Q_yy*rrrrs_q_x - rrrrs_Q_xy*rrrrs_q_y
+        rrrrs_M_ta_t_10 = rrrrs_Q_zz*rrrrs_q_y - rrrrs_Q_yz*rrrrs_q_z
+        rrrrs_M_ta_t_11 = rrrrs_Q_xz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_x
+        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_2 + rrrrs_M_ta_t_7
+        # (M_aa) rotational block of M
+        rrrrs_M_aa_t = rrrrs_M_ta_t_10*rrrrs_q_y - rrrrs_M_ta_t_6*rrrrs_q_z
+        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*rrrrs_q_y + rrrrs_M_ta_t_8*rrrrs_q_z
+        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_y + rrrrs_M_ta_t_9*rrrrs_q_z
+        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*rrrrs_q_x + rrrrs_M_ta_t_4*rrrrs_q_z
+        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_x + rrrrs_M_ta_t_5*rrrrs_q_z
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*rrrrs_q_x - rrrrs_M_ta_t_5*rrrrs_q_y
+        # (Z_a) rotational part of Z
+        rrrrs_Z_a_t = rrrrs_U_z*rrrrs_q_y - rrrrs_U_y*rrrrs_q_z
+        rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x
+        rrrrs_Z_a_t_3 = rrrrs_U_y*rrrrs_q_x - rrrrs_U_x*rrrrs_q_y
+        # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
+        rrrrs_M_ya_2_x = rrrrs_d_P_2_z*rrrrs_q_y - rrrrs_d_P_2_y*rrrrs_q_z
+        rrrrs_M_ya_2_y = rrrrs_d_P_2_x*rrrrs_q_z - rrrrs_d_P_2_z*rrrrs_q_x
+        rrrrs_M_ya_2_z = rrrrs_d_P_2_y*rrrrs_q_x - rrrrs_d_P_2_x*rrrrs_q_y
         # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrrs_H_a_1_x = rrrrs_q_in_base_y*rrrrs_w_1_t_5 - rrrrs_q_in_base_z*rrrrs_w_1_t_4
-        rrrrs_H_a_1_y = rrrrs_q_in_base_z*rrrrs_w_1_t_3 - rrrrs_q_in_base_x*rrrrs_w_1_t_5
-        rrrrs_H_a_1_z = rrrrs_q_in_base_x*rrrrs_w_1_t_4 - rrrrs_q_in_base_y*rrrrs_w_1_t_3
-        # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_r0_y
-        rrrrs_w_3_t_2 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_r0_y
-        rrrrs_w_3_t_3 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_r0_y
+        rrrrs_H_a_1_x = rrrrs_q_y*rrrrs_w_1_z - rrrrs_q_z*rrrrs_w_1_y
+        rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
+        rrrrs_H_a_1_z = rrrrs_q_x*rrrrs_w_1_y - rrrrs_q_y*rrrrs_w_1_x
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
-        rrrrs_H_a_3_x = rrrrs_q_in_base_z*rrrrs_w_3_t_2 - rrrrs_q_in_base_y*rrrrs_w_3_t_3
-        rrrrs_H_a_3_y = rrrrs_q_in_base_x*rrrrs_w_3_t_3 - rrrrs_q_in_base_z*rrrrs_w_3_t
-        rrrrs_H_a_3_z = rrrrs_q_in_base_y*rrrrs_w_3_t - rrrrs_q_in_base_x*rrrrs_w_3_t_2
+        rrrrs_H_a_3_x = rrrrs_q_y*rrrrs_w_3_z - rrrrs_q_z*rrrrs_w_3_y
+        rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
+        rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
-            rrrrs_size))
+        ok & m.every(leg, (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrrs_Q_t_12, rrrrs_Q_t_13, rrrrs_Q_t_14, rrrrs_Q_t_16, rrrrs_Q_t_17, rrrrs_Q_t_19,
-            rrrrs_M_ta_t_3, rrrrs_M_ta_t_4, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6, rrrrs_M_ta_t_8,
-            rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11, rrrrs_M_ta_t_12, rrrrs_M_aa_t,
+        rrrrs_Q_xx, rrrrs_Q_xy, rrrrs_Q_xz, rrrrs_Q_yy, rrrrs_Q_yz, rrrrs_Q_zz,
+            rrrrs_M_ta_t_3, -rrrrs_M_ta_t_4, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6, -rrrrs_M_ta_t_8,
+            rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11, -rrrrs_M_ta_t_12, rrrrs_M_aa_t,
             rrrrs_M_aa_t_2, rrrrs_M_aa_t_3, rrrrs_M_aa_t_4, rrrrs_M_aa_t_5, rrrrs_M_aa_t_6,
-            rrrrs_U_in_base_x, rrrrs_U_in_base_y, rrrrs_U_in_base_z, rrrrs_Z_a_t,
-            rrrrs_Z_a_t_2, rrrrs_Z_a_t_3,
+            rrrrs_U_x, rrrrs_U_y, rrrrs_U_z, rrrrs_Z_a_t, rrrrs_Z_a_t_2, rrrrs_Z_a_t_3,
         ))
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
         out_Z[_Z_rrrrs[0][leg]] = rrrrs_P_2_o
-        out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_in_base_x
-        out_M[_M_rrrrs[1][leg]] = rrrrs_d_P_2_in_base_x
-        out_M[_M_rrrrs[2][leg]] = rrrrs_d_P_2_in_base_y
-        out_M[_M_rrrrs[3][leg]] = rrrrs_d_P_2_in_base_y
-        out_M[_M_rrrrs[4][leg]] = rrrrs_d_P_2_in_base_z
-        out_M[_M_rrrrs[5][leg]] = rrrrs_d_P_2_in_base_z
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_x
+        out_M[_M_rrrrs[1][leg]] = rrrrs_d_P_2_x
+        out_M[_M_rrrrs[2][leg]] = rrrrs_d_P_2_y
+        out_M[_M_rrrrs[3][leg]] = rrrrs_d_P_2_y
+        out_M[_M_rrrrs[4][leg]] = rrrrs_d_P_2_z
+        out_M[_M_rrrrs[5][leg]] = rrrrs_d_P_2_z
+        # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
         out_M[_M_rrrrs[6][leg]] = rrrrs_M_ya_2_x
         out_M[_M_rrrrs[7][leg]] = rrrrs_M_ya_2_x
         out_M[_M_rrrrs[8][leg]] = rrrrs_M_ya_2_y
         out_M[_M_rrrrs[9][leg]] = rrrrs_M_ya_2_y
         out_M[_M_rrrrs[10][leg]] = rrrrs_M_ya_2_z
         out_M[_M_rrrrs[11][leg]] = rrrrs_M_ya_2_z
+        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
         out_M[_M_rrrrs[12][leg]] = rrrrs_dy_2_P_2
-        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_t_3
-        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_t_4
-        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        # (rrrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
+        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_y
+        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_z
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[3][leg]] = rrrrs_H_a_1_x
         out_H[_H_rrrrs[4][leg]] = rrrrs_H_a_1_y
         out_H[_H_rrrrs[5][leg]] = rrrrs_H_a_1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_rrrrs[6][leg]] = 1.0
-        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t
-        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_2
-        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_3
+        # (rrrrs-w_3) reciprocal vector 2
+        out_H[_H_rrrrs[7][leg]] = rrrrs_w_3_x
+        out_H[_H_rrrrs[8][leg]] = rrrrs_w_3_y
+        out_H[_H_rrrrs[9][leg]] = rrrrs_w_3_z
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
         out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
-        out_H[_H_rrrrs[13][leg]] = -rrrrs_dy_2_qdd_3
+        # (rrrrs-w_3) reciprocal vector 2
+        out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
     (
-    total_rrrrs_xx, total_rrrrs_xy, total_rrrrs_xz, total_rrrrs_yy, total_rrrrs_yz,
-        total_rrrrs_zz, total_rrrrs_xx_2, total_rrrrs_xy_2, total_rrrrs_xz_2, total_rrrrs_yx,
-        total_rrrrs_yy_2, total_rrrrs_yz_2, total_rrrrs_zx, total_rrrrs_zy, total_rrrrs_zz_2,
-        total_rrrrs_xx_3, total_rrrrs_xy_3, total_rrrrs_xz_3, total_rrrrs_yy_3, total_rrrrs_yz_3,
-        total_rrrrs_zz_3, total_rrrrs_x, total_rrrrs_y, total_rrrrs_z, total_rrrrs_x_2,
-        total_rrrrs_y_2, total_rrrrs_z_2,
+    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
+        M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
+        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_t,
+        M_aa_t_2, M_aa_rrrrs_yz, M_aa_rrrrs_zz, Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z,
+        Z_a_rrrrs_x, Z_a_rrrrs_y, Z_a_rrrrs_z,
     ) = sums
     sums = [0.0] * 27
     for leg, k in legs[1]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
-            rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_d_Gamma_3_t, rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_g_r0_x,
-            rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z,
-            rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
+            rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
+            rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
+            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -2955,510 +3170,556 @@ def _run_dynamics(m, X, V):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
-        # (rrrs-w_3) reciprocal vector 3
-        rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x
-        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x
-        rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y
-        # (rrrs-D_1_3) inertia of joint 3 along joint 1
-        rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y
-        # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3
-        rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x
-        rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz - rrrs_d_Gamma_3_t_3)
-        # (rrrs-J_3) inertia tensor of link 3 about the connection point
-        rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3
-        rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3
-        rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3
-        rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3
-        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3
-        # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz - rrrs_d_Gamma_3_t_3)
-        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrs__y = (
-        -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy + rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3
-            - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 - rrrs_J_3_xx*rrrs_s_3))) -
-            rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx + rrrs__x*rrrs_c_3 +
-            rrrs__x_2*rrrs_s_3))
-        )
-        # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrrs_d_Gamma_1_z = (
-        inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) + rrrs_e_1_r2_x*rrrs_h_3_y -
-            rrrs_e_1_r2_y*rrrs_h_3_x
-        )
-        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_d_G_xz = (
-        rrrs_d_Gamma_3_t_2*rrrs_w_3_t - inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz +
-            rrrs_J_3_yz*rrrs_c_3 - rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz +
-            rrrs_J_3_xz*rrrs_c_3 + rrrs_J_3_yz*rrrs_s_3))
-        )
-        # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrs_d_c_xx = (
-        inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t - inv_rrrs_r_2_r0_y) -
-            rrrs_d_Gamma_3_x*rrrs_w_3_t
-        )
-        rrrs_d_c_xy = (
-        rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y - rrrs_d_Gamma_3_y*rrrs_w_3_t
-        )
-        rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z
-        rrrs_d_c_yz = (
-        rrrs_d_alpha_3_t*rrrs_h_3_z - inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2
-        )
-        # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy
-        rrrs_Q_t_2 = 0.5*rrrs_Q_t
-        rrrs_Q_t_3 = (
-        rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z + rrrs_d_alpha_3_t*rrrs_h_3_y -
-            rrrs_d_alpha_3_t_2*rrrs_h_3_x
-        )
-        rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
-        rrrs_Q_t_5 = (
-        axis_x_rrrs_axes3_x*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2
-        )
-        rrrs_Q_t_6 = (
-        axis_x_rrrs_axes3_y*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2
-        )
-        rrrs_Q_t_7 = (
-        axis_x_rrrs_axes3_z*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2
-        )
-        rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_xz
-        rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_xz
-        rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_xz
-        rrrs_Q_t_11 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8
-        )
-        rrrs_Q_t_12 = 2.0*rrrs_Q_t_11 + rrrs_d_c_xx
-        rrrs_Q_t_13 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8
-        )
-        rrrs_Q_t_14 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8
-        )
-        rrrs_Q_t_15 = (
-        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9
-        )
-        rrrs_Q_t_16 = 2.0*rrrs_Q_t_15 + rrrs_d_c_xx
-        rrrs_Q_t_17 = (
-        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 -
-            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9
-        )
-        rrrs_Q_t_18 = (
-        axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10
-        )
-        rrrs_Q_t_19 = 2.0*rrrs_Q_t_18 + rrrs_d_c_xx
-        # (M_ta) coupling block of M
-        rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z
-        rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2
-        rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x
-        rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x
-        rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y
-        rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x
-        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
-        rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x
-        rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y
-        rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x
-        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
-        # (M_aa) rotational block of M
-        rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_y
-        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y + rrrs_M_ta_t_9*rrrs_q_in_base_z
-        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_x
-        rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x + rrrs_M_ta_t_5*rrrs_q_in_base_z
-        rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y - rrrs_M_ta_t_9*rrrs_q_in_base_x
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
+        # (rrrs-w_3) reciprocal vector 3
+        rrrs_w_3_in_axes3_x = -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
+        rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-u_1) centripetal acceleration of the connection point
         rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
-        # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
-        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
-        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
-        # (rrrs-W_3) centripetal tensor of link 3
-        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
-        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
-        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
-        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
-        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
-        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
-        # (rrrs-u_1) centripetal acceleration of the connection point
-        rrrs_u_1_tip_x = (
+        rrrs_u_1_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
             axis_x_rrrs_axes3_z*rrrs_u_1_z
         )
-        rrrs_u_1_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z
+        rrrs_u_1_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_u_1_x + axis_y_rrrs_axes3_y*rrrs_u_1_y +
+            axis_y_rrrs_axes3_z*rrrs_u_1_z
         )
-        rrrs_u_1_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z
+        rrrs_u_1_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_u_1_x + axis_z_rrrs_axes3_y*rrrs_u_1_y +
+            axis_z_rrrs_axes3_z*rrrs_u_1_z
+        )
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x
-        rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y
-        rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z
-        # (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x
-        rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z
+        rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z
+        # (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
-        rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o
         # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t
-        rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y
+        rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t
+        rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz
+        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o
+        rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
+        rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y
+        rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
+        # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
+        rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        rrrs_alpha_3_o_x = (
-        rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_o_y*rrrs_s_3
+        rrrs_alpha_3_o_in_axes3_x = (
+        rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+            rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
         )
-        rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 - rrrs_zeta_3_y
-        rrrs_alpha_3_o_z = (
-        inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y + rrrs_qdd_2_o*rrrs_r_2_r0_x) -
-            rrrs_qdd_2_o
+        rrrs_alpha_3_o_in_axes3_y = (
+        rrrs_alpha_2_o_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_o_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
+        )
+        rrrs_alpha_3_o_in_axes3_z = (
+        rrrs_qdd_2_o + rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y -
+            rrrs_qdd_2_o*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-B_3_o) remainder of the acceleration tensor of link 3
-        rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z
-        rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y
-        rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z
-        rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x
-        rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y
-        rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x
+        rrrs_B_3_o_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z
+        rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y
+        rrrs_B_3_o_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z
+        rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
+        rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
+        rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
         # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_o_x = (
-        rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        rrrs_acc_3_o_in_axes3_x = (
+        rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_y = (
-        rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
+        rrrs_acc_3_o_in_axes3_y = (
+        rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+            axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_z = (
-        rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
+        rrrs_acc_3_o_in_axes3_z = (
+        rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+            axis_z_rrrs_axes3_z*gravity_z
+        )
+        # (rrrs-D_1_3) inertia of joint 3 along joint 1
+        rrrs_D_1_3 = (
+        rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x + rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y
+        )
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*rrrs_s_3_t
+        rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*rrrs_c_3
+        rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*rrrs_c_3
+        rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*rrrs_s_3_t
+        rrrs_Jc_2_in_axes2_xy = (
+        rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
+        )
+        rrrs_Jc_2_in_axes1_zz = (
+        rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 + rrrs_c_2*(rrrs_J_2_in_spec2_yy +
+            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) + rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t))
         )
         # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_o_x = (
-        rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
-            rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y - rrrs_B_3_o_yz*rrrs_Sigma_3_zz -
-            rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z
+        rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_o_in_axes3_x = (
+        rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
+            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z
         )
-        rrrs_mu_3_o_y = (
-        rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy + rrrs_acc_3_o_x*rrrs_h_3_z -
-            rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
-            rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x
+        rrrs_mu_3_o_in_axes3_y = (
+        rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
         )
-        rrrs_mu_3_o_z = (
-        rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
-            rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x - rrrs_B_3_o_xy*rrrs_Sigma_3_yy -
-            rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y
+        rrrs_mu_3_o_in_axes3_z = (
+        rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
-        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
-        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
-        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
-        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
-        rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o
-        rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o
-        rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y
-        rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x
+        # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
+        rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
+        rrrs_d_Gamma_3_in_axes3_x = (
+        rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
+        )
         # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_o_x = (
-        rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
-            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_o_zx*rrrs_J_2_xy -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y
+        rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_mu_2_o_in_axes2_x = (
+        rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
         )
-        rrrs_mu_2_o_y = (
-        rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_o_xy*rrrs_J_2_yz -
-            rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        rrrs_mu_2_o_in_axes2_y = (
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
+            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
-        rrrs_mu_2_o_z = (
-        rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
-            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_o_t
-            - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        rrrs_mu_2_o_in_axes2_z = (
+        rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
+            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+            rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3
-        rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3
-        rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z
+        rrrs_N_2_o_in_axes2_x = (
+        rrrs_mu_2_o_in_axes2_x + rrrs_c_3*rrrs_mu_3_o_in_axes3_x +
+            rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t
+        )
+        rrrs_N_2_o_in_axes2_y = (
+        rrrs_mu_2_o_in_axes2_y + rrrs_c_3*rrrs_mu_3_o_in_axes3_y -
+            rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t
+        )
+        rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
+        # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrs_d_Gamma_2_in_axes3_x = (
+        rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
+        )
         # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        rrrs_mu_1_o_in_axes1_z = (
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        )
         # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2
+        rrrs_N_1_o_in_axes1_z = (
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2 + rrrs_N_2_o_in_axes2_y*rrrs_c_2
+        )
+        # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrs_d_Gamma_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
+            rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
+        )
+        # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_d_G_in_axes3_xz = (
+        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t))
+        )
         # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z
+        rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
+        # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrs_d_c_in_axes3_xx = (
+        rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x + rrrs_w_3_in_axes3_x) -
+            rrrs_d_Gamma_2_in_axes3_x*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x
+        )
+        rrrs_d_c_in_axes3_xy = (
+        rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
+        )
+        rrrs_d_c_in_axes3_xz = (
+        -rrrs_d_G_in_axes3_xz - rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        )
+        rrrs_d_c_in_axes3_yz = (
+        rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
+            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
+        )
         # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrs_c_o_x = (
-        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x -
-            rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y - rrrs_B_3_o_xz*rrrs_h_3_z
+        rrrs_c_o_in_axes3_x = (
+        rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
+            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_o_y = (
-        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t - rrrs_B_3_o_yx*rrrs_h_3_x -
-            rrrs_B_3_o_yz*rrrs_h_3_z
+        rrrs_c_o_in_axes3_y = (
+        rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
+            rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_o_z = (
-        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_o_z -
-            rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y
+        rrrs_c_o_in_axes3_z = (
+        rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
+            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z
         )
+        # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
+        rrrs_Q_t_2 = 0.5*rrrs_Q_t
+        rrrs_Q_t_3 = (
+        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
+            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
+            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x
+        )
+        rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
+        rrrs_Q_t_5 = (
+        axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_2
+        )
+        rrrs_Q_t_6 = (
+        axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_2
+        )
+        rrrs_Q_t_7 = (
+        axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_z*rrrs_Q_t_2
+        )
+        rrrs_Q_t_8 = axis_z_rrrs_axes3_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_9 = axis_z_rrrs_axes3_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_10 = axis_z_rrrs_axes3_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_x*rrrs_Q_t_8
+        rrrs_Q_xx = -2.0*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_xy = (
+        axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_6 - axis_y_rrrs_axes3_y*rrrs_Q_t_5
+        )
+        rrrs_Q_xz = (
+        axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_5
+        )
+        rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_y*rrrs_Q_t_9
+        rrrs_Q_yy = -2.0*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_yz = (
+        axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9 -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_6
+        )
+        rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_z*rrrs_Q_t_10
+        rrrs_Q_zz = -2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
         # (rrrs-U) velocity and gravity terms of the leg force
-        rrrs_U_in_base_x = (
-        -axis_x_rrrs_axes3_x*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z
+        rrrs_U_x = (
+        -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z
         )
-        rrrs_U_in_base_y = (
-        -axis_x_rrrs_axes3_y*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z
+        rrrs_U_y = (
+        -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z
         )
-        rrrs_U_in_base_z = (
-        -axis_x_rrrs_axes3_z*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z
+        rrrs_U_z = (
+        -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z
         )
+        # (M_ta) coupling block of M
+        rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
+        rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
+        rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t
+        rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
+        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
+        rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
+        rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
+        rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
+        rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
+        rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
+        rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
+        rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
+        # (M_aa) rotational block of M
+        rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y - rrrs_M_ta_t_8*rrrs_q_z
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
         # (Z_a) rotational part of Z
-        rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y - rrrs_U_in_base_y*rrrs_q_in_base_z
-        rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z - rrrs_U_in_base_z*rrrs_q_in_base_x
-        rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x - rrrs_U_in_base_x*rrrs_q_in_base_y
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z
+        rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
+        rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         # (rrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
-        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
-        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
+        rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
+        rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x
         # (rrrs-H_a_2) moment of the column's unit force about the platform origin
-        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
-        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
-        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y
+        rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
+        rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrs_Q_t_12, rrrs_Q_t_13, rrrs_Q_t_14, rrrs_Q_t_16, rrrs_Q_t_17, rrrs_Q_t_19,
-            rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8,
-            rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
-            rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
-            rrrs_U_in_base_x, rrrs_U_in_base_y, rrrs_U_in_base_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
-            rrrs_Z_a_t_3,
+        rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3,
+            rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8, rrrs_M_ta_t_9,
+            rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t, rrrs_M_aa_t_2,
+            rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6, rrrs_U_x, rrrs_U_y,
+            rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
         ))
-        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        # (rrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
         out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
         out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
-        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        out_H[_H_rrrs[6][leg]] = rrrs_w_2_x
+        out_H[_H_rrrs[7][leg]] = rrrs_w_2_y
+        out_H[_H_rrrs[8][leg]] = rrrs_w_2_z
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
     (
-    total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
-        total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
-        total_rrrs_yz_2, total_rrrs_zx, total_rrrs_zy, total_rrrs_zz_2, total_rrrs_xx_3,
-        total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
-        total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
+    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_rrrs_zz,
+        M_ta_rrrs_xx, M_ta_rrrs_xy, M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_rrrs_yy, M_ta_rrrs_yz,
+        M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_rrrs_zz, M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz,
+        M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz, Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x,
+        Z_a_rrrs_y, Z_a_rrrs_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rrrrs_xx - total_rrrs_xx
-    M_tt_xy = -total_rrrrs_xy - total_rrrs_xy
-    M_tt_xz = -total_rrrrs_xz - total_rrrs_xz
-    M_tt_yy = m_star - total_rrrrs_yy - total_rrrs_yy
-    M_tt_yz = -total_rrrrs_yz - total_rrrs_yz
-    M_tt_zz = m_star - total_rrrrs_zz - total_rrrs_zz
+    M_tt_xx = M_tt_rrrrs_xx + M_tt_rrrs_xx + m_star
+    M_tt_xy = M_tt_rrrrs_xy + M_tt_rrrs_xy
+    M_tt_xz = M_tt_rrrrs_xz + M_tt_rrrs_xz
+    M_tt_yy = M_tt_rrrrs_yy + M_tt_rrrs_yy + m_star
+    M_tt_yz = M_tt_rrrrs_yz + M_tt_rrrs_yz
+    M_tt_zz = M_tt_rrrrs_zz + M_tt_rrrs_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xx = total_rrrrs_xx_2 + total_rrrs_xx_2
-    M_ta_xy = h_star_in_base_z - total_rrrrs_xy_2 - total_rrrs_xy_2
-    M_ta_xz = total_rrrrs_xz_2 + total_rrrs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rrrrs_yx + total_rrrs_yx - h_star_in_base_z
-    M_ta_yy = -total_rrrrs_yy_2 - total_rrrs_yy_2
-    M_ta_yz = h_star_in_base_x + total_rrrrs_yz_2 + total_rrrs_yz_2
-    M_ta_zx = h_star_in_base_y + total_rrrrs_zx + total_rrrs_zx
-    M_ta_zy = -h_star_in_base_x - total_rrrrs_zy - total_rrrs_zy
-    M_ta_zz = -total_rrrrs_zz_2 - total_rrrs_zz_2
+    M_ta_xx = M_ta_rrrrs_xx + M_ta_rrrs_xx
+    M_ta_xy = M_ta_rrrrs_xy + M_ta_rrrs_xy + h_star_z
+    M_ta_xz = M_ta_rrrrs_xz + M_ta_rrrs_xz - h_star_y
+    M_ta_yx = M_ta_rrrrs_yx + M_ta_rrrs_yx - h_star_z
+    M_ta_yy = M_ta_rrrrs_yy + M_ta_rrrs_yy
+    M_ta_yz = M_ta_rrrrs_yz + M_ta_rrrs_yz + h_star_x
+    M_ta_zx = M_ta_rrrrs_zx + M_ta_rrrs_zx + h_star_y
+    M_ta_zy = M_ta_rrrrs_zy + M_ta_rrrs_zy - h_star_x
+    M_ta_zz = M_ta_rrrrs_zz + M_ta_rrrs_zz
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rrrrs_xx_3 - total_rrrs_xx_3
-    M_aa_xy = J_star_t_9 + total_rrrrs_xy_3 + total_rrrs_xy_3
-    M_aa_xz = J_star_t_10 - total_rrrrs_xz_3 - total_rrrs_xz_3
-    M_aa_yy = J_star_t_13 - total_rrrrs_yy_3 - total_rrrs_yy_3
-    M_aa_yz = J_star_t_15 + total_rrrrs_yz_3 + total_rrrs_yz_3
-    M_aa_zz = J_star_t_17 - total_rrrrs_zz_3 - total_rrrs_zz_3
+    M_aa_xx = J_star_xx + M_aa_rrrrs_xx + M_aa_rrrs_xx
+    M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy
+    M_aa_xz = J_star_xz + M_aa_rrrs_xz - M_aa_t
+    M_aa_yy = J_star_yy + M_aa_rrrs_yy - M_aa_t_2
+    M_aa_yz = J_star_yz + M_aa_rrrrs_yz + M_aa_rrrs_yz
+    M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rrrrs_x + total_rrrs_x
-    Z_t_y = Z_p_y + total_rrrrs_y + total_rrrs_y
-    Z_t_z = Z_p_z + total_rrrrs_z + total_rrrs_z
+    Z_t_x = Z_p_x + Z_t_rrrrs_x + Z_t_rrrs_x
+    Z_t_y = Z_p_y + Z_t_rrrrs_y + Z_t_rrrs_y
+    Z_t_z = Z_p_z + Z_t_rrrrs_z + Z_t_rrrs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rrrrs_x_2 + total_rrrs_x_2
-    Z_a_y = Z_q_in_base_y + total_rrrrs_y_2 + total_rrrs_y_2
-    Z_a_z = Z_q_in_base_z + total_rrrrs_z_2 + total_rrrs_z_2
+    Z_a_x = Z_a_rrrrs_x + Z_a_rrrs_x + Z_q_x
+    Z_a_y = Z_a_rrrrs_y + Z_a_rrrs_y + Z_q_y
+    Z_a_z = Z_a_rrrrs_z + Z_a_rrrs_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[7] = M_tt_xy
@@ -3468,6 +3729,7 @@ def _run_dynamics(m, X, V):
     out_M[9] = M_tt_yz
     out_M[15] = M_tt_yz
     out_M[16] = M_tt_zz
+    # (M_ta) coupling block of M
     out_M[3] = M_ta_xx
     out_M[21] = M_ta_xx
     out_M[4] = M_ta_xy
@@ -3486,6 +3748,7 @@ def _run_dynamics(m, X, V):
     out_M[30] = M_ta_zy
     out_M[19] = M_ta_zz
     out_M[37] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[24] = M_aa_xx
     out_M[25] = M_aa_xy
     out_M[31] = M_aa_xy
@@ -3495,9 +3758,11 @@ def _run_dynamics(m, X, V):
     out_M[33] = M_aa_yz
     out_M[39] = M_aa_yz
     out_M[40] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -3511,8 +3776,9 @@ def _run_M(m, X):
     cos = m.cos
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3552,459 +3818,474 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-            rrrrs_J_2_xx, rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yy, rrrrs_J_2_yz, rrrrs_J_2_zz,
-            rrrrs_J_3_xx, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yy, rrrrs_J_3_yz, rrrrs_J_4_xx,
-            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yy, rrrrs_J_4_yz, rrrrs_J_4_zz, rrrrs_Jc_2_t,
-            rrrrs_Jc_2_t_2, rrrrs_Jc_3_zz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xx,
+            rrrrs_J_2_in_spec2_xy, rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yy,
+            rrrrs_J_2_in_spec2_yz, rrrrs_J_2_in_spec2_zz, rrrrs_J_3_in_spec3_xx,
+            rrrrs_J_3_in_spec3_xy, rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yy,
+            rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xx, rrrrs_J_4_in_spec4_xy,
+            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yy, rrrrs_J_4_in_spec4_yz,
+            rrrrs_J_4_in_spec4_zz, rrrrs_Jc_2_t, rrrrs_Jc_3_in_axes3_zz, rrrrs_base_frame_xx,
             rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
             rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
             rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-            rrrrs_branch_3, rrrrs_d_G_t, rrrrs_d_Gamma_4_t, rrrrs_d_Gamma_4_y, rrrrs_d_c_yy,
-            rrrrs_d_phi_4_t, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
-            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
-            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+            rrrrs_branch_3, rrrrs_d_G_in_axes4_yy, rrrrs_d_Gamma_4_in_axes4_y, rrrrs_d_Gamma_4_t,
+            rrrrs_d_P_2_t, rrrrs_d_c_in_axes4_yy, rrrrs_d_phi_4_t, rrrrs_h_3_in_spec3_x,
+            rrrrs_h_3_in_spec3_y, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
+            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
+            rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
+            rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3, rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-px_1) component along the reference direction
-        rrrrs_px_1 = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_3 = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_h_3_t_4 = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_h_3_t_5 = rrrrs_q_z + t_z - rrrrs_base_point_z
+        rrrrs_h_3_t_6 = -sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        # (rrrrs-py_1) component across the reference direction
-        rrrrs_py_1 = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
-        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_11 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_10)
+        rrrrs_h_3_t_12 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
-        rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_12 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_11*rrrrs_h_3_t_6
+        rrrrs_h_3_t_15 = rrrrs_h_3_t_13*rrrrs_h_3_t_7 - rrrrs_h_3_t_14
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_11*rrrrs_h_3_t_7
+        rrrrs_h_3_t_17 = rrrrs_h_3_t_16 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15 - rrrrs_joint3_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_17*rrrrs_h_3_t_17 + rrrrs_h_3_t_18*rrrrs_h_3_t_18
+        rrrrs_h_3_t_20 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_19 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_18*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_22 = rrrrs_h_3_t_17*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_23 = rrrrs_h_3_t_21*rrrrs_h_3_t_21 + rrrrs_h_3_t_22*rrrrs_h_3_t_22
+        rrrrs_h_3_t_24 = rrrrs_h_3_t_23 - rrrrs_h_3_t_20*rrrrs_h_3_t_20
+        rrrrs_h_3_t_25 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_24)
+        inv_rrrrs_h_3_t_23 = 1.0/rrrrs_h_3_t_23
+        rrrrs_h_3_t_26 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_21 - rrrrs_h_3_t_22*rrrrs_h_3_t_25)
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        rrrrs_e_1_r3_x = rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4
-        rrrrs_e_1_r3_y = rrrrs_c_4*rrrrs_e_1_r2_y + rrrrs_e_1_r2_x*rrrrs_s_4
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        rrrrs_e_1_r3_x*(rrrrs_c_4*rrrrs_r_1_r2_y + rrrrs_r_1_r2_x*rrrrs_s_4) -
-            rrrrs_e_1_r3_y*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        rrrrs_h_3_t_27 = (
+        inv_rrrrs_h_3_t_23*(rrrrs_h_3_t_20*rrrrs_h_3_t_22 + rrrrs_h_3_t_21*rrrrs_h_3_t_25)
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
+        rrrrs_h_3_in_axes2_x = (
+        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_26 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_27
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        inv_rrrrs_h_3_t_10 = 1.0/rrrrs_h_3_t_10
+        rrrrs_c_1 = -inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_9
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
-        # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
+        rrrrs_s_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_8
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_h_3_t_20*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_25*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
         )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        axis_x_rrrrs_axes4_x = (
-        axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y
-        )
-        axis_x_rrrrs_axes4_y = (
-        axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z
-        )
-        axis_x_rrrrs_axes4_z = (
-        axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
-        )
-        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
-        # (rrrrs-w_3) reciprocal vector 2
-        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
-        # (rrrrs-w_4) reciprocal vector 3
-        rrrrs_w_4_t = inv_rrrrs_platform_joint_offset_x*inv_rrrrs_r_3_r0_y*rrrrs_r_3_r0_x
-        # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
-        rrrrs_d_alpha_4_t = inv_rrrrs_v_1_z*rrrrs_e_1_r3_x
-        rrrrs_d_alpha_4_t_2 = inv_rrrrs_v_1_z*rrrrs_e_1_r3_y
-        # (rrrrs-D_1_4) inertia of joint 4 along joint 1
-        rrrrs_D_1_4 = rrrrs_J_4_xz*rrrrs_e_1_r3_x + rrrrs_J_4_yz*rrrrs_e_1_r3_y
-        # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        rrrrs_d_Gamma_4_t_2 = inv_rrrrs_v_1_z*rrrrs_D_1_4
-        rrrrs_d_Gamma_4_t_3 = rrrrs_d_Gamma_4_t*rrrrs_r_3_r0_x
-        rrrrs_d_Gamma_4_x = -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_J_4_zz - rrrrs_d_Gamma_4_t_3)
-        # (rrrrs-J_4) inertia tensor of link 4 about the connection point
-        rrrrs_J_4_t = rrrrs_J_4_xy*rrrrs_s_4
-        rrrrs__x = rrrrs_J_4_t + rrrrs_J_4_xx*rrrrs_c_4
-        rrrrs_J_4_t_2 = rrrrs_J_4_xy*rrrrs_c_4
-        rrrrs__x_2 = rrrrs_J_4_t_2 + rrrrs_J_4_yy*rrrrs_s_4
-        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-        rrrrs_Jc_3_xx = rrrrs_J_3_xx + rrrrs__x*rrrrs_c_4 + rrrrs__x_2*rrrrs_s_4
-        rrrrs_Jc_3_xy = rrrrs_J_3_xy + rrrrs__x_2*rrrrs_c_4 - rrrrs__x*rrrrs_s_4
-        rrrrs_Jc_3_xz = rrrrs_J_3_xz + rrrrs_J_4_xz*rrrrs_c_4 + rrrrs_J_4_yz*rrrrs_s_4
-        rrrrs_Jc_3_yy = (
-        rrrrs_J_3_yy + rrrrs_c_4*(rrrrs_J_4_yy*rrrrs_c_4 - rrrrs_J_4_t) - rrrrs_s_4*(rrrrs_J_4_t_2
-            - rrrrs_J_4_xx*rrrrs_s_4)
-        )
-        rrrrs_Jc_3_yz = rrrrs_J_3_yz + rrrrs_J_4_yz*rrrrs_c_4 - rrrrs_J_4_xz*rrrrs_s_4
-        # (rrrrs-L_c_3) moment about joint 3 that accelerates joint 3, per unit
-        rrrrs_L_c_3_r0_x = rrrrs_Jc_3_xz*rrrrs_c_3 - rrrrs_Jc_3_yz*rrrrs_s_3
-        rrrrs_L_c_3_r0_y = rrrrs_Jc_3_xz*rrrrs_s_3 + rrrrs_Jc_3_yz*rrrrs_c_3
-        # (rrrrs-P_c_3) force that accelerates joint 3, per unit
-        rrrrs_P_c_3_r0_x = -rrrrs_c_3*rrrrs_h_3_y - rrrrs_h_3_x*rrrrs_s_3
-        rrrrs_P_c_3_r0_y = rrrrs_c_3*rrrrs_h_3_x - rrrrs_h_3_y*rrrrs_s_3
-        # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
-        rrrrs_L_c_3_2_z = rrrrs_Jc_3_zz + rrrrs_P_c_3_r0_y*rrrrs_joint3_offset_x
-        # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrrs_d_Gamma_3_x = (
-        -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_Jc_3_zz - rrrrs_d_Gamma_4_t_3)
-        )
-        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-        rrrrs_Jc_3_t = rrrrs_Jc_3_xy*rrrrs_s_3
-        rrrrs__x_3 = rrrrs_Jc_3_xx*rrrrs_c_3 - rrrrs_Jc_3_t
-        rrrrs_Jc_3_t_2 = rrrrs_Jc_3_xy*rrrrs_c_3
-        rrrrs__x_4 = rrrrs_Jc_3_t_2 - rrrrs_Jc_3_yy*rrrrs_s_3
-        # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrrs_Jc_2_t_3 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_P_c_3_r0_y)
-        rrrrs_Jc_2_t_4 = 2.0*rrrrs_Jc_2_t_3
-        rrrrs_Jc_2_xy = (
-        rrrrs_J_2_xy + rrrrs_P_c_3_r0_x*rrrrs_joint3_offset_x + rrrrs__x_3*rrrrs_s_3 +
-            rrrrs__x_4*rrrrs_c_3
-        )
-        rrrrs__y = (
-        rrrrs_s_2*(rrrrs_s_2*(rrrrs_J_2_xx + rrrrs_Jc_2_t_4 + rrrrs__x_3*rrrrs_c_3 -
-            2.0*rrrrs_Jc_2_t_3 - rrrrs__x_4*rrrrs_s_3) - rrrrs_Jc_2_xy*rrrrs_c_2_t) -
-            rrrrs_c_2_t*(rrrrs_Jc_2_xy*rrrrs_s_2 - rrrrs_c_2_t*(rrrrs_J_2_yy + rrrrs_Jc_2_t_4 +
-            rrrrs_c_3*(rrrrs_Jc_3_t + rrrrs_Jc_3_yy*rrrrs_c_3) + rrrrs_s_3*(rrrrs_Jc_3_t_2 +
-            rrrrs_Jc_3_xx*rrrrs_s_3)))
-        )
-        # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrrrs_d_Gamma_1_z = (
-        inv_rrrrs_v_1_z*(rrrrs_J_1_xx + rrrrs__y) + rrrrs_e_1_r3_x*rrrrs_h_4_y -
-            rrrrs_e_1_r3_y*rrrrs_h_4_x
-        )
-        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_d_G_t_2 = inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_t_2
-        rrrrs_d_G_xx = rrrrs_d_Gamma_4_x*rrrrs_w_4_t - inv_rrrrs_r_3_r0_y*rrrrs_d_Gamma_3_x
-        rrrrs_d_G_xy = rrrrs_d_Gamma_4_y*rrrrs_w_4_t - inv_rrrrs_r_3_r0_y*rrrrs_d_Gamma_4_y
-        rrrrs_d_G_xz = (
-        rrrrs_d_Gamma_4_t_2*rrrrs_w_4_t -
-            inv_rrrrs_r_3_r0_y*inv_rrrrs_v_1_z*(rrrrs_L_c_3_r0_x*rrrrs_s_2 -
-            rrrrs_L_c_3_r0_y*rrrrs_c_2_t)
-        )
-        # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrrs_d_c_xx = rrrrs_h_4_y*(rrrrs_w_4_t - inv_rrrrs_r_3_r0_y) - rrrrs_d_G_xx
-        rrrrs_d_c_xy = rrrrs_d_phi_4_t - rrrrs_d_G_xy
-        rrrrs_d_c_xz = -rrrrs_d_G_xz - rrrrs_d_alpha_4_t_2*rrrrs_h_4_z
-        rrrrs_d_c_yz = rrrrs_d_alpha_4_t*rrrrs_h_4_z - rrrrs_d_G_t_2
-        # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrrrs_Q_t = rrrrs_d_c_xx - rrrrs_d_c_yy
-        rrrrs_Q_t_2 = 0.5*rrrrs_Q_t
-        rrrrs_Q_t_3 = (
-        rrrrs_d_c_xx + inv_rrrrs_v_1_z*rrrrs_d_Gamma_1_z + rrrrs_d_alpha_4_t*rrrrs_h_4_y -
-            rrrrs_d_alpha_4_t_2*rrrrs_h_4_x
-        )
-        rrrrs_Q_t_4 = 0.5*rrrrs_Q_t_3
-        rrrrs_Q_t_5 = (
-        axis_x_rrrrs_axes4_x*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_x*rrrrs_d_c_yz -
-            axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_2
-        )
-        rrrrs_Q_t_6 = (
-        axis_x_rrrrs_axes4_y*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_y*rrrrs_d_c_yz -
-            axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_2
-        )
-        rrrrs_Q_t_7 = (
-        axis_x_rrrrs_axes4_z*rrrrs_d_c_xy + axis_z_rrrrs_axes4_in_base_z*rrrrs_d_c_yz -
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_2
-        )
-        rrrrs_Q_t_8 = axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_x*rrrrs_d_c_xz
-        rrrrs_Q_t_9 = axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_y*rrrrs_d_c_xz
-        rrrrs_Q_t_10 = (
-        axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_4 - axis_x_rrrrs_axes4_z*rrrrs_d_c_xz
-        )
-        rrrrs_Q_t_11 = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_5 - axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_8
-        )
-        rrrrs_Q_t_12 = 2.0*rrrrs_Q_t_11 + rrrrs_d_c_xx
-        rrrrs_Q_t_13 = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_6 + axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_5 -
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_9 - axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_8
-        )
-        rrrrs_Q_t_14 = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_5 -
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_Q_t_10 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_8
-        )
-        rrrrs_Q_t_15 = (
-        axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_6 - axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_9
-        )
-        rrrrs_Q_t_16 = 2.0*rrrrs_Q_t_15 + rrrrs_d_c_xx
-        rrrrs_Q_t_17 = (
-        axis_y_rrrrs_axes4_in_base_y*rrrrs_Q_t_7 + axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_6 -
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_Q_t_10 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_9
-        )
-        rrrrs_Q_t_18 = (
-        axis_y_rrrrs_axes4_in_base_z*rrrrs_Q_t_7 - axis_z_rrrrs_axes4_in_base_z*rrrrs_Q_t_10
-        )
-        rrrrs_Q_t_19 = 2.0*rrrrs_Q_t_18 + rrrrs_d_c_xx
-        # (M_ta) coupling block of M
-        rrrrs_M_ta_t = rrrrs_Q_t_13*rrrrs_q_in_base_z
-        rrrrs_M_ta_t_2 = rrrrs_Q_t_14*rrrrs_q_in_base_y
-        rrrrs_M_ta_t_3 = rrrrs_M_ta_t - rrrrs_M_ta_t_2
-        rrrrs_M_ta_t_4 = rrrrs_Q_t_12*rrrrs_q_in_base_z - rrrrs_Q_t_14*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_5 = rrrrs_Q_t_12*rrrrs_q_in_base_y - rrrrs_Q_t_13*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_6 = rrrrs_Q_t_16*rrrrs_q_in_base_z - rrrrs_Q_t_17*rrrrs_q_in_base_y
-        rrrrs_M_ta_t_7 = rrrrs_Q_t_17*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
-        rrrrs_M_ta_t_9 = rrrrs_Q_t_13*rrrrs_q_in_base_y - rrrrs_Q_t_16*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_10 = rrrrs_Q_t_17*rrrrs_q_in_base_z - rrrrs_Q_t_19*rrrrs_q_in_base_y
-        rrrrs_M_ta_t_11 = rrrrs_Q_t_14*rrrrs_q_in_base_z - rrrrs_Q_t_19*rrrrs_q_in_base_x
-        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_7 - rrrrs_M_ta_t_2
-        # (M_aa) rotational block of M
-        rrrrs_M_aa_t = rrrrs_M_ta_t_6*rrrrs_q_in_base_z - rrrrs_M_ta_t_10*rrrrs_q_in_base_y
-        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_8*rrrrs_q_in_base_z - rrrrs_M_ta_t_11*rrrrs_q_in_base_y
-        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_in_base_y + rrrrs_M_ta_t_9*rrrrs_q_in_base_z
-        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_4*rrrrs_q_in_base_z - rrrrs_M_ta_t_11*rrrrs_q_in_base_x
-        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_in_base_x + rrrrs_M_ta_t_5*rrrrs_q_in_base_z
-        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_5*rrrrs_q_in_base_y - rrrrs_M_ta_t_9*rrrrs_q_in_base_x
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
-        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
-        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
-        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
-        # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrrrs_d_Gamma_2_x = (
-        -rrrrs_h_4_y - inv_rrrrs_r_3_r0_y*(rrrrs_L_c_3_2_z - rrrrs_d_Gamma_4_t_3)
+        rrrrs_r_2_t = rrrrs_h_3_t_15*rrrrs_h_3_t_26 + rrrrs_h_3_t_17*rrrrs_h_3_t_27
+        rrrrs_r_2_t_2 = rrrrs_h_3_t_17*rrrrs_h_3_t_26 - rrrrs_h_3_t_15*rrrrs_h_3_t_27
+        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_h_3_t_26*rrrrs_h_3_t_7 + rrrrs_h_3_t_27*rrrrs_h_3_t_6
+        rrrrs_v_1_t_2 = rrrrs_h_3_t_26*rrrrs_h_3_t_6 - rrrrs_h_3_t_27*rrrrs_h_3_t_7
+        rrrrs_e_1_in_axes4_x = rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2
+        rrrrs_e_1_in_axes4_y = rrrrs_c_4*rrrrs_v_1_t_2 + rrrrs_s_4_t*rrrrs_v_1_t
+        rrrrs_v_1_t_3 = rrrrs_h_3_t_12*rrrrs_h_3_t_7 - rrrrs_h_3_t_14
+        rrrrs_v_1_t_4 = rrrrs_h_3_t_16 + rrrrs_h_3_t_12*rrrrs_h_3_t_6
+        rrrrs_v_1_t_5 = rrrrs_h_3_t_26*rrrrs_v_1_t_3 + rrrrs_h_3_t_27*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_h_3_t_26*rrrrs_v_1_t_4 - rrrrs_h_3_t_27*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        rrrrs_e_1_in_axes4_x*(rrrrs_c_4*rrrrs_v_1_t_6 + rrrrs_s_4_t*rrrrs_v_1_t_5) -
+            rrrrs_e_1_in_axes4_y*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
         )
-        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        rrrrs_d_P_2_x = (
-        rrrrs_d_Gamma_2_x + rrrrs_d_G_xx*rrrrs_r_2_r1_y -
-            inv_rrrrs_platform_joint_offset_x*rrrrs_d_Gamma_4_x*rrrrs_r_2_r1_x
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        # (rrrrs-w_4) reciprocal vector 3
+        rrrrs_w_4_in_axes4_x = -rrrrs_r_3_in_axes4_x*rrrrs_w_3_in_axes4_x*rrrrs_w_4_in_axes4_y
+        # (rrrrs-dy_2_qdd_3) coefficient of the acceleration in: acceleration of joint 3
+        rrrrs_dy_2_qdd_3 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
+        # (rrrrs-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4
+        rrrrs_d_alpha_4_in_axes4_xz = rrrrs_e_1_in_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_d_alpha_4_in_axes4_yz = rrrrs_e_1_in_axes4_y*rrrrs_w_1_in_axes4_z
+        # (rrrrs-D_1_4) inertia of joint 4 along joint 1
+        rrrrs_D_1_4 = (
+        rrrrs_J_4_in_spec4_xz*rrrrs_e_1_in_axes4_x + rrrrs_J_4_in_spec4_yz*rrrrs_e_1_in_axes4_y
         )
-        rrrrs_d_P_2_y = (
-        rrrrs_d_Gamma_4_y + rrrrs_d_G_xy*rrrrs_r_2_r1_y - rrrrs_d_G_t*rrrrs_r_2_r1_x
+        # (rrrrs-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
+        rrrrs_Jc_3_t = rrrrs_J_4_in_spec4_xy*rrrrs_s_4_t
+        rrrrs_Jc_3_t_2 = rrrrs_Jc_3_t + rrrrs_J_4_in_spec4_xx*rrrrs_c_4
+        rrrrs_Jc_3_t_3 = rrrrs_J_4_in_spec4_xy*rrrrs_c_4
+        rrrrs_Jc_3_t_4 = rrrrs_Jc_3_t_3 + rrrrs_J_4_in_spec4_yy*rrrrs_s_4_t
+        rrrrs_Jc_3_in_axes3_xx = (
+        rrrrs_J_3_in_spec3_xx + rrrrs_Jc_3_t_2*rrrrs_c_4 + rrrrs_Jc_3_t_4*rrrrs_s_4_t
         )
-        rrrrs_d_P_2_z = (
-        inv_rrrrs_v_1_z*(rrrrs_s_2*(rrrrs_J_2_xz + rrrrs_L_c_3_r0_x - rrrrs_Jc_2_t_2) -
-            rrrrs_c_2_t*(rrrrs_J_2_yz + rrrrs_L_c_3_r0_y)) + rrrrs_d_G_xz*rrrrs_r_2_r1_y -
-            rrrrs_d_G_t_2*rrrrs_r_2_r1_x
+        rrrrs_Jc_3_in_axes3_xy = (
+        rrrrs_J_3_in_spec3_xy + rrrrs_Jc_3_t_4*rrrrs_c_4 - rrrrs_Jc_3_t_2*rrrrs_s_4_t
         )
-        rrrrs_d_P_2_in_base_x = (
-        axis_x_rrrrs_axes4_x*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_x*rrrrs_d_P_2_y +
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_d_P_2_z
+        rrrrs_Jc_3_in_axes3_xz = (
+        rrrrs_J_3_in_spec3_xz + rrrrs_J_4_in_spec4_xz*rrrrs_c_4 +
+            rrrrs_J_4_in_spec4_yz*rrrrs_s_4_t
         )
-        rrrrs_d_P_2_in_base_y = (
-        axis_x_rrrrs_axes4_y*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_d_P_2_y +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_d_P_2_z
+        rrrrs_Jc_3_in_axes3_yy = (
+        rrrrs_J_3_in_spec3_yy + rrrrs_c_4*(rrrrs_J_4_in_spec4_yy*rrrrs_c_4 - rrrrs_Jc_3_t) -
+            rrrrs_s_4_t*(rrrrs_Jc_3_t_3 - rrrrs_J_4_in_spec4_xx*rrrrs_s_4_t)
         )
-        rrrrs_d_P_2_in_base_z = (
-        axis_x_rrrrs_axes4_z*rrrrs_d_P_2_x + axis_y_rrrrs_axes4_in_base_z*rrrrs_d_P_2_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_d_P_2_z
+        rrrrs_Jc_3_in_axes3_yz = (
+        rrrrs_J_3_in_spec3_yz + rrrrs_J_4_in_spec4_yz*rrrrs_c_4 -
+            rrrrs_J_4_in_spec4_xz*rrrrs_s_4_t
         )
-        # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
-        rrrrs_M_ya_2_x = (
-        rrrrs_d_P_2_in_base_z*rrrrs_q_in_base_y - rrrrs_d_P_2_in_base_y*rrrrs_q_in_base_z
+        rrrrs_Jc_3_in_axes2_xz = (
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_26 - rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_27
         )
-        rrrrs_M_ya_2_y = (
-        rrrrs_d_P_2_in_base_x*rrrrs_q_in_base_z - rrrrs_d_P_2_in_base_z*rrrrs_q_in_base_x
+        rrrrs_Jc_3_in_axes2_yz = (
+        rrrrs_Jc_3_in_axes3_xz*rrrrs_h_3_t_27 + rrrrs_Jc_3_in_axes3_yz*rrrrs_h_3_t_26
         )
-        rrrrs_M_ya_2_z = (
-        rrrrs_d_P_2_in_base_y*rrrrs_q_in_base_x - rrrrs_d_P_2_in_base_x*rrrrs_q_in_base_y
+        # (rrrrs-P_c_3) force that accelerates joint 3, per unit
+        rrrrs_P_c_3_in_axes2_x = (
+        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_27 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_26
         )
-        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
-        rrrrs_dy_2_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y
-        # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrrrs_dy_2_Gamma_2_t = (
-        inv_rrrrs_platform_joint_offset_x*rrrrs_J_4_zz*(rrrrs_dy_2_qdd_3*rrrrs_r_3_r0_x -
-            rrrrs_r_2_r1_x)
+        # (rrrrs-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
+        rrrrs_L_c_3_2_in_axes2_z = (
+        rrrrs_Jc_3_in_axes3_zz + rrrrs_h_3_in_axes2_x*rrrrs_joint3_offset_x
         )
-        rrrrs_dy_2_Gamma_2 = (
-        rrrrs_J_2_zz + rrrrs_Jc_2_t_4 + rrrrs_Jc_3_zz + rrrrs_dy_2_Gamma_2_t -
-            rrrrs_L_c_3_2_z*rrrrs_dy_2_qdd_3
+        # (rrrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrrs_Jc_2_t_2 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_27
+        rrrrs_Jc_2_t_3 = rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_26 - rrrrs_Jc_2_t_2
+        rrrrs_Jc_2_t_4 = rrrrs_Jc_3_in_axes3_xy*rrrrs_h_3_t_26
+        rrrrs_Jc_2_t_5 = rrrrs_Jc_2_t_4 - rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_27
+        rrrrs_Jc_2_t_6 = rrrrs_joint3_offset_x*(rrrrs_Jc_2_t + rrrrs_h_3_in_axes2_x)
+        rrrrs_Jc_2_t_7 = 2.0*rrrrs_Jc_2_t_6
+        rrrrs_Jc_2_in_axes2_xy = (
+        rrrrs_J_2_in_spec2_xy + rrrrs_Jc_2_t_3*rrrrs_h_3_t_27 + rrrrs_Jc_2_t_5*rrrrs_h_3_t_26 +
+            rrrrs_P_c_3_in_axes2_x*rrrrs_joint3_offset_x
+        )
+        rrrrs_Jc_2_in_axes1_zz = (
+        rrrrs_h_3_t_6*(rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_7 + rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_yy
+            + rrrrs_Jc_2_t_7 + rrrrs_h_3_t_26*(rrrrs_Jc_2_t_2 +
+            rrrrs_Jc_3_in_axes3_yy*rrrrs_h_3_t_26) + rrrrs_h_3_t_27*(rrrrs_Jc_2_t_4 +
+            rrrrs_Jc_3_in_axes3_xx*rrrrs_h_3_t_27))) +
+            rrrrs_h_3_t_7*(rrrrs_Jc_2_in_axes2_xy*rrrrs_h_3_t_6 +
+            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_xx + rrrrs_Jc_2_t_7 + rrrrs_Jc_2_t_3*rrrrs_h_3_t_26
+            - 2.0*rrrrs_Jc_2_t_6 - rrrrs_Jc_2_t_5*rrrrs_h_3_t_27))
+        )
+        # (rrrrs-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+        rrrrs_d_Gamma_4_in_axes4_z = rrrrs_D_1_4*rrrrs_w_1_in_axes4_z
+        rrrrs_d_Gamma_4_t_2 = rrrrs_d_Gamma_4_t*rrrrs_r_3_in_axes4_x
+        rrrrs_d_Gamma_4_in_axes4_x = (
+        rrrrs_w_3_in_axes4_x*(rrrrs_J_4_in_spec4_zz - rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y
         )
         # (rrrrs-dy_2_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        rrrrs_dy_2_Gamma_4 = rrrrs_J_4_zz + rrrrs_dy_2_Gamma_2_t - rrrrs_J_4_zz*rrrrs_dy_2_qdd_3
+        rrrrs_dy_2_Gamma_4_t = (
+        rrrrs_J_4_in_spec4_zz*rrrrs_w_4_in_axes4_y*(-rrrrs_r_2_in_axes4_x -
+            rrrrs_dy_2_qdd_3*rrrrs_r_3_in_axes4_x)
+        )
+        rrrrs_dy_2_Gamma_4 = (
+        rrrrs_J_4_in_spec4_zz + rrrrs_dy_2_Gamma_4_t + rrrrs_J_4_in_spec4_zz*rrrrs_dy_2_qdd_3
+        )
+        # (rrrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        rrrrs_d_Gamma_3_in_axes4_x = (
+        rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes3_zz - rrrrs_d_Gamma_4_t_2) - rrrrs_h_4_in_spec4_y
+        )
         # (rrrrs-dy_2_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrrs_dy_2_Gamma_3 = (
-        rrrrs_L_c_3_2_z + rrrrs_dy_2_Gamma_2_t - rrrrs_Jc_3_zz*rrrrs_dy_2_qdd_3
+        rrrrs_L_c_3_2_in_axes2_z + rrrrs_dy_2_Gamma_4_t + rrrrs_Jc_3_in_axes3_zz*rrrrs_dy_2_qdd_3
+        )
+        # (rrrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrrs_d_Gamma_2_in_axes4_x = (
+        rrrrs_w_3_in_axes4_x*(rrrrs_L_c_3_2_in_axes2_z - rrrrs_d_Gamma_4_t_2) -
+            rrrrs_h_4_in_spec4_y
+        )
+        # (rrrrs-dy_2_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrrrs_dy_2_Gamma_2 = (
+        rrrrs_J_2_in_spec2_zz + rrrrs_Jc_2_t_7 + rrrrs_Jc_3_in_axes3_zz + rrrrs_dy_2_Gamma_4_t +
+            rrrrs_L_c_3_2_in_axes2_z*rrrrs_dy_2_qdd_3
+        )
+        # (rrrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrrrs_d_Gamma_1_in_axes4_z = (
+        rrrrs_e_1_in_axes4_x*rrrrs_h_4_in_spec4_y + rrrrs_w_1_in_axes4_z*(rrrrs_J_1_in_spec1_xx +
+            rrrrs_Jc_2_in_axes1_zz) - rrrrs_e_1_in_axes4_y*rrrrs_h_4_in_spec4_x
+        )
+        # (rrrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_d_G_in_axes4_yz = rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_y
+        rrrrs_d_G_in_axes4_xx = (
+        rrrrs_d_Gamma_3_in_axes4_x*rrrrs_w_3_in_axes4_x +
+            rrrrs_d_Gamma_4_in_axes4_x*rrrrs_w_4_in_axes4_x
+        )
+        rrrrs_d_G_in_axes4_xy = (
+        rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_3_in_axes4_x +
+            rrrrs_d_Gamma_4_in_axes4_y*rrrrs_w_4_in_axes4_x
+        )
+        rrrrs_d_G_in_axes4_xz = (
+        rrrrs_d_Gamma_4_in_axes4_z*rrrrs_w_4_in_axes4_x +
+            rrrrs_w_1_in_axes4_z*rrrrs_w_3_in_axes4_x*(rrrrs_Jc_3_in_axes2_xz*rrrrs_h_3_t_7 +
+            rrrrs_Jc_3_in_axes2_yz*rrrrs_h_3_t_6)
         )
         # (rrrrs-dy_2_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_dy_2_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_dy_2_Gamma_4
+        rrrrs_dy_2_G_in_axes4_y = rrrrs_dy_2_Gamma_4*rrrrs_w_4_in_axes4_y
+        # (rrrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_d_c_in_axes4_xx = (
+        rrrrs_h_4_in_spec4_y*(rrrrs_w_3_in_axes4_x + rrrrs_w_4_in_axes4_x) - rrrrs_d_G_in_axes4_xx
+        )
+        rrrrs_d_c_in_axes4_xy = rrrrs_d_phi_4_t - rrrrs_d_G_in_axes4_xy
+        rrrrs_d_c_in_axes4_xz = (
+        -rrrrs_d_G_in_axes4_xz - rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_z
+        )
+        rrrrs_d_c_in_axes4_yz = (
+        rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_z - rrrrs_d_G_in_axes4_yz
+        )
+        # (rrrrs-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_Q_t = rrrrs_h_3_t_26*rrrrs_s_4_t - rrrrs_c_4*rrrrs_h_3_t_27
+        rrrrs_Q_t_2 = rrrrs_c_4*rrrrs_h_3_t_26 + rrrrs_h_3_t_27*rrrrs_s_4_t
+        rrrrs_Q_t_3 = rrrrs_Q_t*rrrrs_h_3_t_6 - rrrrs_Q_t_2*rrrrs_h_3_t_7
+        rrrrs_Q_t_4 = rrrrs_Q_t*rrrrs_h_3_t_7 + rrrrs_Q_t_2*rrrrs_h_3_t_6
+        rrrrs_Q_t_5 = rrrrs_Q_t_3*rrrrs_s_1
+        rrrrs_Q_t_6 = rrrrs_Q_t_3*rrrrs_c_1
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_Q_t_4*rrrrs_base_frame_xx + rrrrs_Q_t_6*rrrrs_base_frame_xz -
+            rrrrs_Q_t_5*rrrrs_base_frame_xy
+        )
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_Q_t_4*rrrrs_base_frame_yx + rrrrs_Q_t_6*rrrrs_base_frame_yz -
+            rrrrs_Q_t_5*rrrrs_base_frame_yy
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_Q_t_4*rrrrs_base_frame_zx + rrrrs_Q_t_6*rrrrs_base_frame_zz -
+            rrrrs_Q_t_5*rrrrs_base_frame_zy
+        )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
+        rrrrs_Q_t_7 = rrrrs_d_c_in_axes4_xx - rrrrs_d_c_in_axes4_yy
+        rrrrs_Q_t_8 = 0.5*rrrrs_Q_t_7
+        rrrrs_Q_t_9 = (
+        rrrrs_d_c_in_axes4_xx + rrrrs_d_Gamma_1_in_axes4_z*rrrrs_w_1_in_axes4_z +
+            rrrrs_d_alpha_4_in_axes4_xz*rrrrs_h_4_in_spec4_y -
+            rrrrs_d_alpha_4_in_axes4_yz*rrrrs_h_4_in_spec4_x
+        )
+        rrrrs_Q_t_10 = 0.5*rrrrs_Q_t_9
+        rrrrs_Q_t_11 = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_x*rrrrs_d_c_in_axes4_yz -
+            axis_y_rrrrs_axes4_x*rrrrs_Q_t_8
+        )
+        rrrrs_Q_t_12 = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_y*rrrrs_d_c_in_axes4_yz -
+            axis_y_rrrrs_axes4_y*rrrrs_Q_t_8
+        )
+        rrrrs_Q_t_13 = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xy + axis_z_rrrrs_axes4_z*rrrrs_d_c_in_axes4_yz -
+            axis_y_rrrrs_axes4_z*rrrrs_Q_t_8
+        )
+        rrrrs_Q_t_14 = (
+        axis_z_rrrrs_axes4_x*rrrrs_Q_t_10 - axis_x_rrrrs_axes4_x*rrrrs_d_c_in_axes4_xz
+        )
+        rrrrs_Q_t_15 = (
+        axis_z_rrrrs_axes4_y*rrrrs_Q_t_10 - axis_x_rrrrs_axes4_y*rrrrs_d_c_in_axes4_xz
+        )
+        rrrrs_Q_t_16 = (
+        axis_z_rrrrs_axes4_z*rrrrs_Q_t_10 - axis_x_rrrrs_axes4_z*rrrrs_d_c_in_axes4_xz
+        )
+        rrrrs_Q_t_17 = axis_y_rrrrs_axes4_x*rrrrs_Q_t_11 - axis_z_rrrrs_axes4_x*rrrrs_Q_t_14
+        rrrrs_Q_xx = -2.0*rrrrs_Q_t_17 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_xy = (
+        axis_z_rrrrs_axes4_x*rrrrs_Q_t_15 + axis_z_rrrrs_axes4_y*rrrrs_Q_t_14 -
+            axis_y_rrrrs_axes4_x*rrrrs_Q_t_12 - axis_y_rrrrs_axes4_y*rrrrs_Q_t_11
+        )
+        rrrrs_Q_xz = (
+        axis_z_rrrrs_axes4_x*rrrrs_Q_t_16 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_14 -
+            axis_y_rrrrs_axes4_x*rrrrs_Q_t_13 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_11
+        )
+        rrrrs_Q_t_18 = axis_y_rrrrs_axes4_y*rrrrs_Q_t_12 - axis_z_rrrrs_axes4_y*rrrrs_Q_t_15
+        rrrrs_Q_yy = -2.0*rrrrs_Q_t_18 - rrrrs_d_c_in_axes4_xx
+        rrrrs_Q_yz = (
+        axis_z_rrrrs_axes4_y*rrrrs_Q_t_16 + axis_z_rrrrs_axes4_z*rrrrs_Q_t_15 -
+            axis_y_rrrrs_axes4_y*rrrrs_Q_t_13 - axis_y_rrrrs_axes4_z*rrrrs_Q_t_12
+        )
+        rrrrs_Q_t_19 = axis_y_rrrrs_axes4_z*rrrrs_Q_t_13 - axis_z_rrrrs_axes4_z*rrrrs_Q_t_16
+        rrrrs_Q_zz = -2.0*rrrrs_Q_t_19 - rrrrs_d_c_in_axes4_xx
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        rrrrs_d_P_2_in_axes4_x = (
+        rrrrs_d_Gamma_2_in_axes4_x + rrrrs_d_G_in_axes4_xx*rrrrs_r_2_in_axes4_y -
+            rrrrs_d_Gamma_4_in_axes4_x*rrrrs_r_2_in_axes4_x*rrrrs_w_4_in_axes4_y
+        )
+        rrrrs_d_P_2_in_axes4_y = (
+        rrrrs_d_Gamma_4_in_axes4_y + rrrrs_d_G_in_axes4_xy*rrrrs_r_2_in_axes4_y -
+            rrrrs_d_G_in_axes4_yy*rrrrs_r_2_in_axes4_x
+        )
+        rrrrs_d_P_2_in_axes4_z = (
+        rrrrs_d_G_in_axes4_xz*rrrrs_r_2_in_axes4_y +
+            rrrrs_w_1_in_axes4_z*(rrrrs_h_3_t_6*(rrrrs_J_2_in_spec2_yz + rrrrs_Jc_3_in_axes2_yz) +
+            rrrrs_h_3_t_7*(rrrrs_J_2_in_spec2_xz + rrrrs_Jc_3_in_axes2_xz - rrrrs_d_P_2_t)) -
+            rrrrs_d_G_in_axes4_yz*rrrrs_r_2_in_axes4_x
+        )
+        rrrrs_d_P_2_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_y
+            + axis_z_rrrrs_axes4_x*rrrrs_d_P_2_in_axes4_z
+        )
+        rrrrs_d_P_2_y = (
+        axis_x_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_y
+            + axis_z_rrrrs_axes4_y*rrrrs_d_P_2_in_axes4_z
+        )
+        rrrrs_d_P_2_z = (
+        axis_x_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_x + axis_y_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_y
+            + axis_z_rrrrs_axes4_z*rrrrs_d_P_2_in_axes4_z
+        )
         # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
         rrrrs_dy_2_P_2_t = (
-        inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y*(rrrrs_dy_2_G_t*rrrrs_r_3_r0_x - rrrrs_dy_2_Gamma_3) -
-            rrrrs_dy_2_G_t*rrrrs_r_2_r1_x
+        rrrrs_dy_2_G_in_axes4_y*rrrrs_r_2_in_axes4_x +
+            rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x*(rrrrs_dy_2_G_in_axes4_y*rrrrs_r_3_in_axes4_x
+            - rrrrs_dy_2_Gamma_3)
         )
-        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 + rrrrs_dy_2_P_2_t
+        rrrrs_dy_2_P_2 = rrrrs_dy_2_Gamma_2 - rrrrs_dy_2_P_2_t
+        # (M_ta) coupling block of M
+        rrrrs_M_ta_t = -rrrrs_Q_xy*rrrrs_q_z
+        rrrrs_M_ta_t_2 = rrrrs_Q_xz*rrrrs_q_y
+        rrrrs_M_ta_t_3 = rrrrs_M_ta_t + rrrrs_M_ta_t_2
+        rrrrs_M_ta_t_4 = rrrrs_Q_xz*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_z
+        rrrrs_M_ta_t_5 = rrrrs_Q_xy*rrrrs_q_x - rrrrs_Q_xx*rrrrs_q_y
+        rrrrs_M_ta_t_6 = rrrrs_Q_yz*rrrrs_q_y - rrrrs_Q_yy*rrrrs_q_z
+        rrrrs_M_ta_t_7 = -rrrrs_Q_yz*rrrrs_q_x
+        rrrrs_M_ta_t_8 = rrrrs_M_ta_t - rrrrs_M_ta_t_7
+        rrrrs_M_ta_t_9 = rrrrs_Q_yy*rrrrs_q_x - rrrrs_Q_xy*rrrrs_q_y
+        rrrrs_M_ta_t_10 = rrrrs_Q_zz*rrrrs_q_y - rrrrs_Q_yz*rrrrs_q_z
+        rrrrs_M_ta_t_11 = rrrrs_Q_xz*rrrrs_q_z - rrrrs_Q_zz*rrrrs_q_x
+        rrrrs_M_ta_t_12 = rrrrs_M_ta_t_2 + rrrrs_M_ta_t_7
+        # (M_aa) rotational block of M
+        rrrrs_M_aa_t = rrrrs_M_ta_t_10*rrrrs_q_y - rrrrs_M_ta_t_6*rrrrs_q_z
+        rrrrs_M_aa_t_2 = rrrrs_M_ta_t_11*rrrrs_q_y + rrrrs_M_ta_t_8*rrrrs_q_z
+        rrrrs_M_aa_t_3 = rrrrs_M_ta_t_12*rrrrs_q_y + rrrrs_M_ta_t_9*rrrrs_q_z
+        rrrrs_M_aa_t_4 = rrrrs_M_ta_t_11*rrrrs_q_x + rrrrs_M_ta_t_4*rrrrs_q_z
+        rrrrs_M_aa_t_5 = rrrrs_M_ta_t_12*rrrrs_q_x + rrrrs_M_ta_t_5*rrrrs_q_z
+        rrrrs_M_aa_t_6 = rrrrs_M_ta_t_9*rrrrs_q_x - rrrrs_M_ta_t_5*rrrrs_q_y
+        # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
+        rrrrs_M_ya_2_x = rrrrs_d_P_2_z*rrrrs_q_y - rrrrs_d_P_2_y*rrrrs_q_z
+        rrrrs_M_ya_2_y = rrrrs_d_P_2_x*rrrrs_q_z - rrrrs_d_P_2_z*rrrrs_q_x
+        rrrrs_M_ya_2_z = rrrrs_d_P_2_y*rrrrs_q_x - rrrrs_d_P_2_x*rrrrs_q_y
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
-            rrrrs_size))
+        ok & m.every(leg, (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_23) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_24 >=
+            0.0) & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) &
+            (abs(rrrrs_r_3_in_axes4_y) > _TOLERANCE * rrrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrrs_Q_t_12, rrrrs_Q_t_13, rrrrs_Q_t_14, rrrrs_Q_t_16, rrrrs_Q_t_17, rrrrs_Q_t_19,
-            rrrrs_M_ta_t_3, rrrrs_M_ta_t_4, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6, rrrrs_M_ta_t_8,
-            rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11, rrrrs_M_ta_t_12, rrrrs_M_aa_t,
+        rrrrs_Q_xx, rrrrs_Q_xy, rrrrs_Q_xz, rrrrs_Q_yy, rrrrs_Q_yz, rrrrs_Q_zz,
+            rrrrs_M_ta_t_3, -rrrrs_M_ta_t_4, rrrrs_M_ta_t_5, rrrrs_M_ta_t_6, -rrrrs_M_ta_t_8,
+            rrrrs_M_ta_t_9, rrrrs_M_ta_t_10, rrrrs_M_ta_t_11, -rrrrs_M_ta_t_12, rrrrs_M_aa_t,
             rrrrs_M_aa_t_2, rrrrs_M_aa_t_3, rrrrs_M_aa_t_4, rrrrs_M_aa_t_5, rrrrs_M_aa_t_6,
         ))
-        out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_in_base_x
-        out_M[_M_rrrrs[1][leg]] = rrrrs_d_P_2_in_base_x
-        out_M[_M_rrrrs[2][leg]] = rrrrs_d_P_2_in_base_y
-        out_M[_M_rrrrs[3][leg]] = rrrrs_d_P_2_in_base_y
-        out_M[_M_rrrrs[4][leg]] = rrrrs_d_P_2_in_base_z
-        out_M[_M_rrrrs[5][leg]] = rrrrs_d_P_2_in_base_z
+        # (rrrrs-d_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+        out_M[_M_rrrrs[0][leg]] = rrrrs_d_P_2_x
+        out_M[_M_rrrrs[1][leg]] = rrrrs_d_P_2_x
+        out_M[_M_rrrrs[2][leg]] = rrrrs_d_P_2_y
+        out_M[_M_rrrrs[3][leg]] = rrrrs_d_P_2_y
+        out_M[_M_rrrrs[4][leg]] = rrrrs_d_P_2_z
+        out_M[_M_rrrrs[5][leg]] = rrrrs_d_P_2_z
+        # (rrrrs-M_ya_2) coupling of extra joint 2 with the rotation of the platform
         out_M[_M_rrrrs[6][leg]] = rrrrs_M_ya_2_x
         out_M[_M_rrrrs[7][leg]] = rrrrs_M_ya_2_x
         out_M[_M_rrrrs[8][leg]] = rrrrs_M_ya_2_y
         out_M[_M_rrrrs[9][leg]] = rrrrs_M_ya_2_y
         out_M[_M_rrrrs[10][leg]] = rrrrs_M_ya_2_z
         out_M[_M_rrrrs[11][leg]] = rrrrs_M_ya_2_z
+        # (rrrrs-dy_2_P_2) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
         out_M[_M_rrrrs[12][leg]] = rrrrs_dy_2_P_2
     (
-    total_rrrrs_xx, total_rrrrs_xy, total_rrrrs_xz, total_rrrrs_yy, total_rrrrs_yz,
-        total_rrrrs_zz, total_rrrrs_xx_2, total_rrrrs_xy_2, total_rrrrs_xz_2, total_rrrrs_yx,
-        total_rrrrs_yy_2, total_rrrrs_yz_2, total_rrrrs_zx, total_rrrrs_zy, total_rrrrs_zz_2,
-        total_rrrrs_xx_3, total_rrrrs_xy_3, total_rrrrs_xz_3, total_rrrrs_yy_3, total_rrrrs_yz_3,
-        total_rrrrs_zz_3,
+    M_tt_rrrrs_xx, M_tt_rrrrs_xy, M_tt_rrrrs_xz, M_tt_rrrrs_yy, M_tt_rrrrs_yz, M_tt_rrrrs_zz,
+        M_ta_rrrrs_xx, M_ta_rrrrs_xy, M_ta_rrrrs_xz, M_ta_rrrrs_yx, M_ta_rrrrs_yy, M_ta_rrrrs_yz,
+        M_ta_rrrrs_zx, M_ta_rrrrs_zy, M_ta_rrrrs_zz, M_aa_rrrrs_xx, M_aa_rrrrs_xy, M_aa_t,
+        M_aa_t_2, M_aa_rrrrs_yz, M_aa_rrrrs_zz,
     ) = sums
     sums = [0.0] * 21
     for leg, k in legs[1]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xx, rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yy, rrrs_J_2_yz, rrrs_J_3_xx,
-            rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yy, rrrs_J_3_yz, rrrs_J_3_zz, rrrs_Jc_2_zz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
-            rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-            rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-            rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_t,
-            rrrs_d_Gamma_3_y, rrrs_d_c_yy, rrrs_d_phi_3_t, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z,
-            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xx,
+            rrrs_J_2_in_spec2_xy, rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yy,
+            rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xx, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yy, rrrs_J_3_in_spec3_yz,
+            rrrs_J_3_in_spec3_zz, rrrs_Jc_2_in_axes2_zz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_d_Gamma_3_in_axes3_y, rrrs_d_Gamma_3_t,
+            rrrs_d_c_in_axes3_yy, rrrs_d_phi_3_t, rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y,
+            rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -4017,252 +4298,257 @@ def _run_M(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-w_3) reciprocal vector 3
-        rrrs_w_3_t = inv_rrrs_platform_joint_offset_x*inv_rrrs_r_2_r0_y*rrrs_r_2_r0_x
+        rrrs_w_3_in_axes3_x = -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y
         # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        rrrs_d_alpha_3_t = inv_rrrs_v_1_z*rrrs_e_1_r2_x
-        rrrs_d_alpha_3_t_2 = inv_rrrs_v_1_z*rrrs_e_1_r2_y
+        rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z
         # (rrrs-D_1_3) inertia of joint 3 along joint 1
-        rrrs_D_1_3 = rrrs_J_3_xz*rrrs_e_1_r2_x + rrrs_J_3_yz*rrrs_e_1_r2_y
+        rrrs_D_1_3 = (
+        rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x + rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y
+        )
+        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
+        rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*rrrs_s_3_t
+        rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*rrrs_c_3
+        rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*rrrs_c_3
+        rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*rrrs_s_3_t
+        rrrs_Jc_2_in_axes2_xy = (
+        rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
+        )
+        rrrs_Jc_2_in_axes1_zz = (
+        rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 + rrrs_c_2*(rrrs_J_2_in_spec2_yy +
+            rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) + rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t))
+        )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rrrs_d_Gamma_3_t_2 = inv_rrrs_v_1_z*rrrs_D_1_3
-        rrrs_d_Gamma_3_t_3 = rrrs_d_Gamma_3_t*rrrs_r_2_r0_x
-        rrrs_d_Gamma_3_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_J_3_zz - rrrs_d_Gamma_3_t_3)
-        # (rrrs-J_3) inertia tensor of link 3 about the connection point
-        rrrs_J_3_t = rrrs_J_3_xy*rrrs_s_3
-        rrrs__x = rrrs_J_3_t + rrrs_J_3_xx*rrrs_c_3
-        rrrs_J_3_t_2 = rrrs_J_3_xy*rrrs_c_3
-        rrrs__x_2 = rrrs_J_3_t_2 + rrrs_J_3_yy*rrrs_s_3
-        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrs_Jc_2_xy = rrrs_J_2_xy + rrrs__x_2*rrrs_c_3 - rrrs__x*rrrs_s_3
+        rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
+        rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x
+        rrrs_d_Gamma_3_in_axes3_x = (
+        rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
+        )
         # (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrrs_d_Gamma_2_x = -rrrs_h_3_y - inv_rrrs_r_2_r0_y*(rrrs_Jc_2_zz - rrrs_d_Gamma_3_t_3)
-        # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        rrrs__y = (
-        -rrrs_c_2*(-rrrs_Jc_2_xy*rrrs_s_2 - rrrs_c_2*(rrrs_J_2_yy + rrrs_c_3*(rrrs_J_3_yy*rrrs_c_3
-            - rrrs_J_3_t) - rrrs_s_3*(rrrs_J_3_t_2 - rrrs_J_3_xx*rrrs_s_3))) -
-            rrrs_s_2*(-rrrs_Jc_2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_xx + rrrs__x*rrrs_c_3 +
-            rrrs__x_2*rrrs_s_3))
+        rrrs_d_Gamma_2_in_axes3_x = (
+        rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz - rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrrs_d_Gamma_1_z = (
-        inv_rrrs_v_1_z*(rrrs_J_1_xx + rrrs__y) + rrrs_e_1_r2_x*rrrs_h_3_y -
-            rrrs_e_1_r2_y*rrrs_h_3_x
+        rrrs_d_Gamma_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y + rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx +
+            rrrs_Jc_2_in_axes1_zz) - rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x
         )
         # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_d_G_xz = (
-        rrrs_d_Gamma_3_t_2*rrrs_w_3_t - inv_rrrs_r_2_r0_y*inv_rrrs_v_1_z*(-rrrs_c_2*(rrrs_J_2_yz +
-            rrrs_J_3_yz*rrrs_c_3 - rrrs_J_3_xz*rrrs_s_3) - rrrs_s_2*(rrrs_J_2_xz +
-            rrrs_J_3_xz*rrrs_c_3 + rrrs_J_3_yz*rrrs_s_3))
+        rrrs_d_G_in_axes3_xz = (
+        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
+            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
+            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
+            rrrs_J_3_in_spec3_yz*rrrs_s_3_t))
         )
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrs_d_c_xx = (
-        inv_rrrs_r_2_r0_y*rrrs_d_Gamma_2_x + rrrs_h_3_y*(rrrs_w_3_t - inv_rrrs_r_2_r0_y) -
-            rrrs_d_Gamma_3_x*rrrs_w_3_t
+        rrrs_d_c_in_axes3_xx = (
+        rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x + rrrs_w_3_in_axes3_x) -
+            rrrs_d_Gamma_2_in_axes3_x*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x
         )
-        rrrs_d_c_xy = (
-        rrrs_d_phi_3_t + inv_rrrs_r_2_r0_y*rrrs_d_Gamma_3_y - rrrs_d_Gamma_3_y*rrrs_w_3_t
+        rrrs_d_c_in_axes3_xy = (
+        rrrs_d_phi_3_t - rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
+            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x
         )
-        rrrs_d_c_xz = -rrrs_d_G_xz - rrrs_d_alpha_3_t_2*rrrs_h_3_z
-        rrrs_d_c_yz = (
-        rrrs_d_alpha_3_t*rrrs_h_3_z - inv_rrrs_platform_joint_offset_x*rrrs_d_Gamma_3_t_2
+        rrrs_d_c_in_axes3_xz = (
+        -rrrs_d_G_in_axes3_xz - rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        )
+        rrrs_d_c_in_axes3_yz = (
+        rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
+            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
         )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrrs_Q_t = rrrs_d_c_xx - rrrs_d_c_yy
-        rrrs_Q_t_2 = 0.5*rrrs_Q_t
-        rrrs_Q_t_3 = (
-        rrrs_d_c_xx + inv_rrrs_v_1_z*rrrs_d_Gamma_1_z + rrrs_d_alpha_3_t*rrrs_h_3_y -
-            rrrs_d_alpha_3_t_2*rrrs_h_3_x
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_Q_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_Q_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_Q_t*rrrs_base_frame_xy + rrrs_base_frame_xx*rrrs_e_1_in_axes3_y -
+            rrrs_Q_t_2*rrrs_base_frame_xz
         )
+        axis_y_rrrs_axes3_y = (
+        rrrs_Q_t*rrrs_base_frame_yy + rrrs_base_frame_yx*rrrs_e_1_in_axes3_y -
+            rrrs_Q_t_2*rrrs_base_frame_yz
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_Q_t*rrrs_base_frame_zy + rrrs_base_frame_zx*rrrs_e_1_in_axes3_y -
+            rrrs_Q_t_2*rrrs_base_frame_zz
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy
         rrrs_Q_t_4 = 0.5*rrrs_Q_t_3
         rrrs_Q_t_5 = (
-        axis_x_rrrs_axes3_x*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_x*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_2
+        rrrs_d_c_in_axes3_xx + rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
+            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
+            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x
         )
-        rrrs_Q_t_6 = (
-        axis_x_rrrs_axes3_y*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_y*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_2
-        )
+        rrrs_Q_t_6 = 0.5*rrrs_Q_t_5
         rrrs_Q_t_7 = (
-        axis_x_rrrs_axes3_z*rrrs_d_c_xy + axis_z_rrrs_axes3_in_base_z*rrrs_d_c_yz -
-            axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_2
+        axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_4
         )
-        rrrs_Q_t_8 = axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_4 - axis_x_rrrs_axes3_x*rrrs_d_c_xz
-        rrrs_Q_t_9 = axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_4 - axis_x_rrrs_axes3_y*rrrs_d_c_xz
-        rrrs_Q_t_10 = axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_4 - axis_x_rrrs_axes3_z*rrrs_d_c_xz
-        rrrs_Q_t_11 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_8
+        rrrs_Q_t_8 = (
+        axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_4
         )
-        rrrs_Q_t_12 = 2.0*rrrs_Q_t_11 + rrrs_d_c_xx
-        rrrs_Q_t_13 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_6 + axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_9 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_8
+        rrrs_Q_t_9 = (
+        axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy + axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz -
+            axis_y_rrrs_axes3_z*rrrs_Q_t_4
         )
-        rrrs_Q_t_14 = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_5 -
-            axis_z_rrrs_axes3_in_base_x*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_8
+        rrrs_Q_t_10 = axis_z_rrrs_axes3_x*rrrs_Q_t_6 - axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_11 = axis_z_rrrs_axes3_y*rrrs_Q_t_6 - axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_12 = axis_z_rrrs_axes3_z*rrrs_Q_t_6 - axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz
+        rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_z_rrrs_axes3_x*rrrs_Q_t_10
+        rrrs_Q_xx = -2.0*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_xy = (
+        axis_z_rrrs_axes3_x*rrrs_Q_t_11 + axis_z_rrrs_axes3_y*rrrs_Q_t_10 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_8 - axis_y_rrrs_axes3_y*rrrs_Q_t_7
         )
-        rrrs_Q_t_15 = (
-        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_9
+        rrrs_Q_xz = (
+        axis_z_rrrs_axes3_x*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_10 -
+            axis_y_rrrs_axes3_x*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_7
         )
-        rrrs_Q_t_16 = 2.0*rrrs_Q_t_15 + rrrs_d_c_xx
-        rrrs_Q_t_17 = (
-        axis_y_rrrs_axes3_in_base_y*rrrs_Q_t_7 + axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_6 -
-            axis_z_rrrs_axes3_in_base_y*rrrs_Q_t_10 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_9
+        rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 - axis_z_rrrs_axes3_y*rrrs_Q_t_11
+        rrrs_Q_yy = -2.0*rrrs_Q_t_14 - rrrs_d_c_in_axes3_xx
+        rrrs_Q_yz = (
+        axis_z_rrrs_axes3_y*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_11 -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_8
         )
-        rrrs_Q_t_18 = (
-        axis_y_rrrs_axes3_in_base_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_in_base_z*rrrs_Q_t_10
-        )
-        rrrs_Q_t_19 = 2.0*rrrs_Q_t_18 + rrrs_d_c_xx
+        rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 - axis_z_rrrs_axes3_z*rrrs_Q_t_12
+        rrrs_Q_zz = -2.0*rrrs_Q_t_15 - rrrs_d_c_in_axes3_xx
         # (M_ta) coupling block of M
-        rrrs_M_ta_t = rrrs_Q_t_13*rrrs_q_in_base_z
-        rrrs_M_ta_t_2 = rrrs_Q_t_14*rrrs_q_in_base_y
-        rrrs_M_ta_t_3 = rrrs_M_ta_t - rrrs_M_ta_t_2
-        rrrs_M_ta_t_4 = rrrs_Q_t_12*rrrs_q_in_base_z - rrrs_Q_t_14*rrrs_q_in_base_x
-        rrrs_M_ta_t_5 = rrrs_Q_t_12*rrrs_q_in_base_y - rrrs_Q_t_13*rrrs_q_in_base_x
-        rrrs_M_ta_t_6 = rrrs_Q_t_16*rrrs_q_in_base_z - rrrs_Q_t_17*rrrs_q_in_base_y
-        rrrs_M_ta_t_7 = rrrs_Q_t_17*rrrs_q_in_base_x
+        rrrs_M_ta_t = rrrs_Q_xy*rrrs_q_z
+        rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y
+        rrrs_M_ta_t_3 = rrrs_M_ta_t_2 - rrrs_M_ta_t
+        rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x
+        rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y
+        rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z
+        rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x
         rrrs_M_ta_t_8 = rrrs_M_ta_t - rrrs_M_ta_t_7
-        rrrs_M_ta_t_9 = rrrs_Q_t_13*rrrs_q_in_base_y - rrrs_Q_t_16*rrrs_q_in_base_x
-        rrrs_M_ta_t_10 = rrrs_Q_t_17*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_y
-        rrrs_M_ta_t_11 = rrrs_Q_t_14*rrrs_q_in_base_z - rrrs_Q_t_19*rrrs_q_in_base_x
+        rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y
+        rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z
+        rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x
         rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2
         # (M_aa) rotational block of M
-        rrrs_M_aa_t = rrrs_M_ta_t_6*rrrs_q_in_base_z - rrrs_M_ta_t_10*rrrs_q_in_base_y
-        rrrs_M_aa_t_2 = rrrs_M_ta_t_8*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_y
-        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_in_base_y + rrrs_M_ta_t_9*rrrs_q_in_base_z
-        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_in_base_z - rrrs_M_ta_t_11*rrrs_q_in_base_x
-        rrrs_M_aa_t_5 = rrrs_M_ta_t_12*rrrs_q_in_base_x + rrrs_M_ta_t_5*rrrs_q_in_base_z
-        rrrs_M_aa_t_6 = rrrs_M_ta_t_5*rrrs_q_in_base_y - rrrs_M_ta_t_9*rrrs_q_in_base_x
+        rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z
+        rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y - rrrs_M_ta_t_8*rrrs_q_z
+        rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z
+        rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x
+        rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x
+        rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrs_Q_t_12, rrrs_Q_t_13, rrrs_Q_t_14, rrrs_Q_t_16, rrrs_Q_t_17, rrrs_Q_t_19,
-            rrrs_M_ta_t_3, rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8,
-            rrrs_M_ta_t_9, rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t,
-            rrrs_M_aa_t_2, rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
+        rrrs_Q_xx, rrrs_Q_xy, rrrs_Q_xz, rrrs_Q_yy, rrrs_Q_yz, rrrs_Q_zz, rrrs_M_ta_t_3,
+            rrrs_M_ta_t_4, rrrs_M_ta_t_5, rrrs_M_ta_t_6, rrrs_M_ta_t_8, rrrs_M_ta_t_9,
+            rrrs_M_ta_t_10, rrrs_M_ta_t_11, rrrs_M_ta_t_12, rrrs_M_aa_t, rrrs_M_aa_t_2,
+            rrrs_M_aa_t_3, rrrs_M_aa_t_4, rrrs_M_aa_t_5, rrrs_M_aa_t_6,
         ))
     (
-    total_rrrs_xx, total_rrrs_xy, total_rrrs_xz, total_rrrs_yy, total_rrrs_yz, total_rrrs_zz,
-        total_rrrs_xx_2, total_rrrs_xy_2, total_rrrs_xz_2, total_rrrs_yx, total_rrrs_yy_2,
-        total_rrrs_yz_2, total_rrrs_zx, total_rrrs_zy, total_rrrs_zz_2, total_rrrs_xx_3,
-        total_rrrs_xy_3, total_rrrs_xz_3, total_rrrs_yy_3, total_rrrs_yz_3, total_rrrs_zz_3,
+    M_tt_rrrs_xx, M_tt_rrrs_xy, M_tt_rrrs_xz, M_tt_rrrs_yy, M_tt_rrrs_yz, M_tt_rrrs_zz,
+        M_ta_rrrs_xx, M_ta_rrrs_xy, M_ta_rrrs_xz, M_ta_rrrs_yx, M_ta_rrrs_yy, M_ta_rrrs_yz,
+        M_ta_rrrs_zx, M_ta_rrrs_zy, M_ta_rrrs_zz, M_aa_rrrs_xx, M_aa_rrrs_xy, M_aa_rrrs_xz,
+        M_aa_rrrs_yy, M_aa_rrrs_yz, M_aa_rrrs_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rrrrs_xx - total_rrrs_xx
-    M_tt_xy = -total_rrrrs_xy - total_rrrs_xy
-    M_tt_xz = -total_rrrrs_xz - total_rrrs_xz
-    M_tt_yy = m_star - total_rrrrs_yy - total_rrrs_yy
-    M_tt_yz = -total_rrrrs_yz - total_rrrs_yz
-    M_tt_zz = m_star - total_rrrrs_zz - total_rrrs_zz
+    M_tt_xx = M_tt_rrrrs_xx + M_tt_rrrs_xx + m_star
+    M_tt_xy = M_tt_rrrrs_xy + M_tt_rrrs_xy
+    M_tt_xz = M_tt_rrrrs_xz + M_tt_rrrs_xz
+    M_tt_yy = M_tt_rrrrs_yy + M_tt_rrrs_yy + m_star
+    M_tt_yz = M_tt_rrrrs_yz + M_tt_rrrs_yz
+    M_tt_zz = M_tt_rrrrs_zz + M_tt_rrrs_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xx = total_rrrrs_xx_2 + total_rrrs_xx_2
-    M_ta_xy = h_star_in_base_z - total_rrrrs_xy_2 - total_rrrs_xy_2
-    M_ta_xz = total_rrrrs_xz_2 + total_rrrs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rrrrs_yx + total_rrrs_yx - h_star_in_base_z
-    M_ta_yy = -total_rrrrs_yy_2 - total_rrrs_yy_2
-    M_ta_yz = h_star_in_base_x + total_rrrrs_yz_2 + total_rrrs_yz_2
-    M_ta_zx = h_star_in_base_y + total_rrrrs_zx + total_rrrs_zx
-    M_ta_zy = -h_star_in_base_x - total_rrrrs_zy - total_rrrs_zy
-    M_ta_zz = -total_rrrrs_zz_2 - total_rrrs_zz_2
+    M_ta_xx = M_ta_rrrrs_xx + M_ta_rrrs_xx
+    M_ta_xy = M_ta_rrrrs_xy + M_ta_rrrs_xy + h_star_z
+    M_ta_xz = M_ta_rrrrs_xz + M_ta_rrrs_xz - h_star_y
+    M_ta_yx = M_ta_rrrrs_yx + M_ta_rrrs_yx - h_star_z
+    M_ta_yy = M_ta_rrrrs_yy + M_ta_rrrs_yy
+    M_ta_yz = M_ta_rrrrs_yz + M_ta_rrrs_yz + h_star_x
+    M_ta_zx = M_ta_rrrrs_zx + M_ta_rrrs_zx + h_star_y
+    M_ta_zy = M_ta_rrrrs_zy + M_ta_rrrs_zy - h_star_x
+    M_ta_zz = M_ta_rrrrs_zz + M_ta_rrrs_zz
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_rrrrs_xx_3 - total_rrrs_xx_3
-    M_aa_xy = J_star_t_9 + total_rrrrs_xy_3 + total_rrrs_xy_3
-    M_aa_xz = J_star_t_10 - total_rrrrs_xz_3 - total_rrrs_xz_3
-    M_aa_yy = J_star_t_13 - total_rrrrs_yy_3 - total_rrrs_yy_3
-    M_aa_yz = J_star_t_15 + total_rrrrs_yz_3 + total_rrrs_yz_3
-    M_aa_zz = J_star_t_17 - total_rrrrs_zz_3 - total_rrrs_zz_3
+    M_aa_xx = J_star_xx + M_aa_rrrrs_xx + M_aa_rrrs_xx
+    M_aa_xy = J_star_xy + M_aa_rrrrs_xy + M_aa_rrrs_xy
+    M_aa_xz = J_star_xz + M_aa_rrrs_xz - M_aa_t
+    M_aa_yy = J_star_yy + M_aa_rrrs_yy - M_aa_t_2
+    M_aa_yz = J_star_yz + M_aa_rrrrs_yz + M_aa_rrrs_yz
+    M_aa_zz = J_star_zz + M_aa_rrrrs_zz + M_aa_rrrs_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[7] = M_tt_xy
@@ -4272,6 +4558,7 @@ def _run_M(m, X):
     out_M[9] = M_tt_yz
     out_M[15] = M_tt_yz
     out_M[16] = M_tt_zz
+    # (M_ta) coupling block of M
     out_M[3] = M_ta_xx
     out_M[21] = M_ta_xx
     out_M[4] = M_ta_xy
@@ -4290,6 +4577,7 @@ def _run_M(m, X):
     out_M[30] = M_ta_zy
     out_M[19] = M_ta_zz
     out_M[37] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[24] = M_aa_xx
     out_M[25] = M_aa_xy
     out_M[31] = M_aa_xy
@@ -4309,8 +4597,9 @@ def _run_Z(m, X, V):
     cos = m.cos
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -4363,72 +4652,92 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-            rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yz,
-            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
-            rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx,
-            rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy,
-            rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x, rrrrs_g_r0_y,
-            rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z,
-            rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
-            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
+            rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
+            rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
+            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
+            rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
+            rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
+            rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
+            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
+            rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
+            rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
+            rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
+            rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
+            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+            rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
         # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        rrrrs_c_2 = -sin(rrrrs_y_2_extra)
         # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
         rrrrs_s_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
-        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
-        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
         # (rrrrs-px_1) component along the reference direction
         rrrrs_px_1 = (
         rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
@@ -4443,493 +4752,558 @@ def _run_Z(m, X, V):
         rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
         # (rrrrs-root_1) root, with the sign of the branch
         rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = -inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
         # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
+        rrrrs_xi_1_in_axes1_z = (
         rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
             rrrrs_S_z*rrrrs_base_frame_zx
         )
         # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_in_axes1_z = rrrrs_xi_1_in_axes1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_x = rrrrs_s_2*rrrrs_x_2_in_axes1_z - rrrrs_x_2_t
         rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_x_2_in_axes1_z
         # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
         # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        rrrrs_Kd_3_t = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
         # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
         # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
         # (rrrrs-rho2_3) squared amplitude
         rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
         # (rrrrs-disc_3) discriminant
         rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
         # (rrrrs-root_3) root, with the sign of the branch
         rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
-        )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
         # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
         inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
         rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
         # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
-            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
-            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
-        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
-        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
-        # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        axis_x_rrrrs_axes4_x = (
-        axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y
-        )
-        axis_x_rrrrs_axes4_y = (
-        axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z
-        )
-        axis_x_rrrrs_axes4_z = (
-        axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
-        )
-        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
-        # (rrrrs-w_3) reciprocal vector 2
-        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
         # (rrrrs-S_dot) velocity of the connection point
-        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
-        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
-        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_x - omega_x*rrrrs_q_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_y - omega_y*rrrrs_q_x
         rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
-        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
-        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
-        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
+        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_s_3 + rrrrs_c_3*rrrrs_s_2
+        rrrrs_v_1_t_2 = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_3 = rrrrs_s_2*rrrrs_xi_1_in_axes1_z - rrrrs_x_2_t
+        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_xi_1_in_axes1_z
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
+            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
+            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        )
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_S_dot_rest_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_S_dot_rest_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_S_dot_rest_t_3 = rrrrs_S_dot_rest_t*rrrrs_c_2 - rrrrs_S_dot_rest_t_2*rrrrs_s_2
+        rrrrs_S_dot_rest_t_4 = rrrrs_S_dot_rest_t*rrrrs_s_2 + rrrrs_S_dot_rest_t_2*rrrrs_c_2
+        rrrrs_S_dot_rest_t_5 = rrrrs_S_dot_rest_t_3*rrrrs_s_1
+        rrrrs_S_dot_rest_t_6 = rrrrs_S_dot_rest_t_3*rrrrs_c_1
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_xx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy
+        )
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_yx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_zx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy
+        )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
         rrrrs_S_dot_rest_x = (
-        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_y = (
-        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_y*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_z = (
-        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_z*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_in_axes4_y)
         )
-        # (rrrrs-qd_4) rate of joint 4
+        # (rrrrs-qd_1) rate of joint 1
+        rrrrs_qd_1 = (
+        rrrrs_w_1_in_axes4_z*(axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
+        )
+        # (rrrrs-qd_3) rate of joint 3
         rrrrs_qd_3 = (
-        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
+        # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
-        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
-        )
-        rrrrs_qd_1 = (
-        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
+        rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
-        # (rrrrs-omega_2) angular velocity of link 2
-        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
-        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
+        rrrrs_omega_1_in_axes2_x = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_in_axes2_y = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
+        rrrrs_omega_1_t_2 = (
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
+        )
+        rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
+        rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
+        # (rrrrs-W_1) centripetal tensor of link 1
+        rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x
+        rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y
+        rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y
+        # (rrrrs-W_2) centripetal tensor of link 2
+        rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y
         # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
-        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
-        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
+        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
+        # (rrrrs-W_3) centripetal tensor of link 3
+        rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z
+        rrrrs_W_3_in_axes3_yz = rrrrs_omega_1_t_2*rrrrs_omega_3_in_axes3_z
         # (rrrrs-omega_4) angular velocity of link 4
-        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
-        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        rrrrs_zeta_4_y = rrrrs_omega_3_r0_x*rrrrs_qd_4
+        rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4
+        # (rrrrs-W_4) centripetal tensor of link 4
+        rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t
+        rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z
         # (rrrrs-u_1) centripetal acceleration of the connection point
         rrrrs_u_1_x = omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
         rrrrs_u_1_y = omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
         rrrrs_u_1_z = omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
-        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
-        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
-        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_x = rrrrs_omega_2_r0_y*rrrrs_qd_3
-        rrrrs_zeta_3_y = rrrrs_omega_2_r0_x*rrrrs_qd_3
-        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrrs_beta_3_x = -rrrrs_zeta_3_x - rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_s_3*rrrrs_zeta_2_y
-        rrrrs_beta_3_y = rrrrs_zeta_3_y + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
-        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
-        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
-        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_zeta_4_y
-        # (rrrrs-W_2) centripetal tensor of link 2
-        rrrrs_W_2_t = rrrrs_omega_1_t*rrrrs_omega_1_t
-        rrrrs_W_2_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
-        rrrrs_W_2_t_3 = rrrrs_yd_2*rrrrs_yd_2
-        rrrrs_W_2_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
-        # (rrrrs-W_3) centripetal tensor of link 3
-        rrrrs_W_3_t = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_x
-        rrrrs_W_3_t_2 = rrrrs_omega_2_r0_y*rrrrs_omega_2_r0_y
-        rrrrs_W_3_t_3 = rrrrs_omega_3_z*rrrrs_omega_3_z
-        rrrrs_W_3_xy = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_y
-        rrrrs_W_3_xz = rrrrs_omega_2_r0_x*rrrrs_omega_3_z
-        rrrrs_W_3_yz = rrrrs_omega_2_r0_y*rrrrs_omega_3_z
-        # (rrrrs-W_4) centripetal tensor of link 4
-        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
-        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
-        rrrrs_W_4_t_3 = rrrrs_omega_4_z*rrrrs_omega_4_z
-        rrrrs_W_4_xx = rrrrs_W_4_t_2 + rrrrs_W_4_t_3
-        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
-        rrrrs_W_4_xz = rrrrs_omega_3_r0_x*rrrrs_omega_4_z
-        rrrrs_W_4_yz = rrrrs_omega_3_r0_y*rrrrs_omega_4_z
-        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
-        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
-        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
-        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
-        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
-        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
-        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
-        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
-        rrrrs_bias_x = (
-        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
-            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_W_4_xx*rrrrs_platform_joint_offset_x -
-            rrrrs_bias_t_3*(rrrrs_W_3_t_3 + rrrrs_W_4_t_2) - rrrrs_d_3_r1_x*(rrrrs_W_2_t_3 +
-            rrrrs_W_4_t_2)
-        )
-        rrrrs_bias_y = (
-        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
-            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
-            rrrrs_bias_t_4*(rrrrs_W_3_t_3 + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t_3 +
-            rrrrs_W_4_t)
-        )
-        rrrrs_bias_z = (
-        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
-            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
-            rrrrs_beta_3_y*rrrrs_s_4) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_xz -
-            rrrrs_beta_4_y) + 2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
-            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
-        )
-        # (rrrrs-u_1) centripetal acceleration of the connection point
-        rrrrs_u_1_tip_x = (
+        rrrrs_u_1_in_axes4_x = (
         axis_x_rrrrs_axes4_x*rrrrs_u_1_x + axis_x_rrrrs_axes4_y*rrrrs_u_1_y +
             axis_x_rrrrs_axes4_z*rrrrs_u_1_z
         )
-        rrrrs_u_1_tip_y = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_u_1_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_u_1_y +
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_u_1_z
+        rrrrs_u_1_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*rrrrs_u_1_x + axis_y_rrrrs_axes4_y*rrrrs_u_1_y +
+            axis_y_rrrrs_axes4_z*rrrrs_u_1_z
         )
-        rrrrs_u_1_tip_z = (
-        axis_z_rrrrs_axes4_in_base_x*rrrrs_u_1_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_u_1_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_u_1_z
+        rrrrs_u_1_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*rrrrs_u_1_x + axis_z_rrrrs_axes4_y*rrrrs_u_1_y +
+            axis_z_rrrrs_axes4_z*rrrrs_u_1_z
+        )
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
+        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_in_axes3_x = (
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_s_3
+        )
+        rrrrs_beta_3_in_axes3_y = (
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
+        )
+        rrrrs_beta_3_in_axes4_y = (
+        rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
+        )
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_in_axes2_x = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_d_2_in_axes2_y = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
+        rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
+        rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
+        rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_bias_in_axes4_x = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
+            rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_y = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
+            - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
+            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_z = (
+        rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
+            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
+            2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
         # (rrrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrrrs_rel_o_x = rrrrs_u_1_tip_x - rrrrs_bias_x
-        rrrrs_rel_o_y = rrrrs_u_1_tip_y - rrrrs_bias_y
-        rrrrs_rel_o_z = rrrrs_u_1_tip_z - rrrrs_bias_z
-        # (rrrrs-qdd_4_o) remainder without the acceleration in: acceleration of joint 4
-        rrrrs_qdd_3_o = inv_rrrrs_r_3_r0_y*rrrrs_rel_o_x
-        rrrrs_qdd_1_o = inv_rrrrs_v_1_z*rrrrs_rel_o_z
+        rrrrs_rel_o_in_axes4_x = rrrrs_u_1_in_axes4_x - rrrrs_bias_in_axes4_x
+        rrrrs_rel_o_in_axes4_y = rrrrs_u_1_in_axes4_y - rrrrs_bias_in_axes4_y
+        rrrrs_rel_o_in_axes4_z = rrrrs_u_1_in_axes4_z - rrrrs_bias_in_axes4_z
+        # (rrrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rrrrs_qdd_1_o = rrrrs_rel_o_in_axes4_z*rrrrs_w_1_in_axes4_z
+        # (rrrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
+        rrrrs_qdd_3_o = rrrrs_rel_o_in_axes4_x*rrrrs_w_3_in_axes4_x
         # (rrrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        rrrrs_alpha_1_o_t = rrrrs_qdd_1_o*rrrrs_s_2
-        rrrrs_alpha_1_o_t_2 = rrrrs_c_2_t*rrrrs_qdd_1_o
+        rrrrs_alpha_1_o_in_axes2_x = rrrrs_qdd_1_o*rrrrs_s_2
+        rrrrs_alpha_1_o_in_axes2_y = rrrrs_c_2*rrrrs_qdd_1_o
         # (rrrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrrrs_alpha_2_o_x = rrrrs_alpha_1_o_t - rrrrs_zeta_2_x
-        rrrrs_alpha_2_o_y = -rrrrs_alpha_1_o_t_2 - rrrrs_zeta_2_y
+        rrrrs_alpha_2_o_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_o_in_axes2_x
+        rrrrs_alpha_2_o_in_axes2_y = rrrrs_alpha_1_o_in_axes2_y - rrrrs_W_2_in_axes2_xz
+        # (rrrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrrs_B_2_o_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_o_in_axes2_y
+        rrrrs_B_2_o_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_o_in_axes2_x
         # (rrrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        rrrrs_alpha_3_o_x = (
-        rrrrs_alpha_2_o_x*rrrrs_c_3 + rrrrs_alpha_2_o_y*rrrrs_s_3 - rrrrs_zeta_3_x
+        rrrrs_alpha_3_o_in_axes3_x = (
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_o_in_axes2_x*rrrrs_c_3 +
+            rrrrs_alpha_2_o_in_axes2_y*rrrrs_s_3
         )
-        rrrrs_alpha_3_o_y = (
-        rrrrs_zeta_3_y + rrrrs_alpha_2_o_y*rrrrs_c_3 - rrrrs_alpha_2_o_x*rrrrs_s_3
+        rrrrs_alpha_3_o_in_axes3_y = (
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_o_in_axes2_y*rrrrs_c_3 -
+            rrrrs_alpha_2_o_in_axes2_x*rrrrs_s_3
         )
+        # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
+        rrrrs_B_3_o_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_qdd_3_o
+        rrrrs_B_3_o_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_o_in_axes3_y
+        rrrrs_B_3_o_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_qdd_3_o
+        rrrrs_B_3_o_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_o_in_axes3_x
+        rrrrs_B_3_o_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_o_in_axes3_y
+        rrrrs_B_3_o_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_o_in_axes3_x
         # (rrrrs-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
-        rrrrs_alpha_4_o_x = (
-        rrrrs_alpha_3_o_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_qd_4 - rrrrs_alpha_3_o_y*rrrrs_s_4
+        rrrrs_alpha_4_o_in_axes4_x = (
+        rrrrs_alpha_3_o_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
+            rrrrs_alpha_3_o_in_axes3_y*rrrrs_s_4_t
         )
-        rrrrs_alpha_4_o_y = (
-        rrrrs_alpha_3_o_x*rrrrs_s_4 + rrrrs_alpha_3_o_y*rrrrs_c_4 - rrrrs_zeta_4_y
+        rrrrs_alpha_4_o_in_axes4_y = (
+        rrrrs_alpha_3_o_in_axes3_x*rrrrs_s_4_t + rrrrs_alpha_3_o_in_axes3_y*rrrrs_c_4 -
+            rrrrs_zeta_4_t
         )
-        rrrrs_alpha_4_o_z = (
-        inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_o_y + rrrrs_qdd_3_o*rrrrs_r_3_r0_x) -
-            rrrrs_qdd_3_o
+        rrrrs_alpha_4_o_in_axes4_z = (
+        rrrrs_qdd_3_o + rrrrs_w_4_in_axes4_y*(rrrrs_rel_o_in_axes4_y -
+            rrrrs_qdd_3_o*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-B_4_o) remainder of the acceleration tensor of link 4
-        rrrrs_B_4_o_xy = rrrrs_W_4_xy - rrrrs_alpha_4_o_z
-        rrrrs_B_4_o_xz = rrrrs_W_4_xz + rrrrs_alpha_4_o_y
-        rrrrs_B_4_o_yx = rrrrs_W_4_xy + rrrrs_alpha_4_o_z
-        rrrrs_B_4_o_yz = rrrrs_W_4_yz - rrrrs_alpha_4_o_x
-        rrrrs_B_4_o_zx = rrrrs_W_4_xz - rrrrs_alpha_4_o_y
-        rrrrs_B_4_o_zy = rrrrs_W_4_yz + rrrrs_alpha_4_o_x
+        rrrrs_B_4_o_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_o_in_axes4_z
+        rrrrs_B_4_o_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_o_in_axes4_y
+        rrrrs_B_4_o_in_axes4_yx = rrrrs_W_1_in_axes4_xy + rrrrs_alpha_4_o_in_axes4_z
+        rrrrs_B_4_o_in_axes4_yz = rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_o_in_axes4_x
+        rrrrs_B_4_o_in_axes4_zx = rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_o_in_axes4_y
+        rrrrs_B_4_o_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_o_in_axes4_x
+        # (rrrrs-a_o_3) acceleration of the origin of joint 3
+        rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y
+        rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
+        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
+        rrrrs_a_o_3_o_in_axes2_y = rrrrs_W_2_in_axes2_xy*rrrrs_joint3_offset_x
+        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+        rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
+        rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
+        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_y + rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_z - rrrrs_g_in_axes1_y*rrrrs_s_2
+        rrrrs_acc_3_o_in_axes3_x = (
+        rrrrs_a_o_3_in_axes2_x*rrrrs_c_3 + rrrrs_a_o_3_o_in_axes2_y*rrrrs_s_3 -
+            rrrrs_c_3*rrrrs_g_in_axes2_x - rrrrs_g_in_axes2_y*rrrrs_s_3
+        )
+        rrrrs_acc_3_o_in_axes3_y = (
+        rrrrs_a_o_3_o_in_axes2_y*rrrrs_c_3 + rrrrs_g_in_axes2_x*rrrrs_s_3 -
+            rrrrs_a_o_3_in_axes2_x*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_in_axes2_y
+        )
+        rrrrs_acc_3_o_in_axes3_z = (
+        rrrrs_B_2_o_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_x
+        )
+        # (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
+        rrrrs_f_3_o_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_f_3_o_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_f_3_o_in_axes3_x = (
+        rrrrs_B_3_o_in_axes3_xy*rrrrs_h_3_in_spec3_y +
+            rrrrs_B_3_o_in_axes3_xz*rrrrs_h_3_in_spec3_z +
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 +
+            rrrrs_f_3_o_t_2)
+        )
+        rrrrs_f_3_o_in_axes3_y = (
+        rrrrs_B_3_o_in_axes3_yx*rrrrs_h_3_in_spec3_x +
+            rrrrs_B_3_o_in_axes3_yz*rrrrs_h_3_in_spec3_z +
+            rrrrs_acc_3_o_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 +
+            rrrrs_f_3_o_t)
+        )
+        rrrrs_f_3_o_in_axes3_z = (
+        rrrrs_B_3_o_in_axes3_zx*rrrrs_h_3_in_spec3_x +
+            rrrrs_B_3_o_in_axes3_zy*rrrrs_h_3_in_spec3_y +
+            rrrrs_acc_3_o_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_o_t +
+            rrrrs_f_3_o_t_2)
+        )
         # (rrrrs-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        rrrrs_acc_4_o_x = (
-        rrrrs_u_1_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
+        rrrrs_acc_4_o_in_axes4_x = (
+        rrrrs_u_1_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
             axis_x_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_o_y = (
-        rrrrs_u_1_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
-            axis_y_rrrrs_axes4_in_base_y*gravity_y - axis_y_rrrrs_axes4_in_base_z*gravity_z
+        rrrrs_acc_4_o_in_axes4_y = (
+        rrrrs_u_1_in_axes4_y - axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y -
+            axis_y_rrrrs_axes4_z*gravity_z
         )
-        rrrrs_acc_4_o_z = (
-        rrrrs_u_1_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
-            axis_z_rrrrs_axes4_in_base_y*gravity_y - axis_z_rrrrs_axes4_in_base_z*gravity_z
+        rrrrs_acc_4_o_in_axes4_z = (
+        rrrrs_u_1_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y -
+            axis_z_rrrrs_axes4_z*gravity_z
         )
         # (rrrrs-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-        rrrrs_mu_4_o_x = (
-        rrrrs_B_4_o_yx*rrrrs_J_4_xz + rrrrs_B_4_o_zy*rrrrs_Sigma_4_yy +
-            rrrrs_J_4_yz*(rrrrs_W_4_t_2 - rrrrs_W_4_t_3) + rrrrs_acc_4_o_z*rrrrs_h_4_y -
-            rrrrs_B_4_o_yz*rrrrs_Sigma_4_zz - rrrrs_B_4_o_zx*rrrrs_J_4_xy -
-            rrrrs_acc_4_o_y*rrrrs_h_4_z
+        rrrrs_mu_4_o_in_axes4_x = (
+        rrrrs_B_4_o_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
+            rrrrs_B_4_o_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy +
+            rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2 - rrrrs_W_4_t) +
+            rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_y -
+            rrrrs_B_4_o_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
+            rrrrs_B_4_o_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
+            rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_z
         )
-        rrrrs_mu_4_o_y = (
-        rrrrs_B_4_o_xz*rrrrs_Sigma_4_zz + rrrrs_B_4_o_zy*rrrrs_J_4_xy +
-            rrrrs_acc_4_o_x*rrrrs_h_4_z - rrrrs_B_4_o_xy*rrrrs_J_4_yz -
-            rrrrs_B_4_o_zx*rrrrs_Sigma_4_xx - rrrrs_J_4_xz*(rrrrs_W_4_t - rrrrs_W_4_t_3) -
-            rrrrs_acc_4_o_z*rrrrs_h_4_x
+        rrrrs_mu_4_o_in_axes4_y = (
+        rrrrs_B_4_o_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
+            rrrrs_B_4_o_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
+            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_z -
+            rrrrs_B_4_o_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
+            rrrrs_B_4_o_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t
+            - rrrrs_W_4_t) - rrrrs_acc_4_o_in_axes4_z*rrrrs_h_4_in_spec4_x
         )
-        rrrrs_mu_4_o_z = (
-        rrrrs_B_4_o_xz*rrrrs_J_4_yz + rrrrs_B_4_o_yx*rrrrs_Sigma_4_xx + rrrrs_J_4_xy*(rrrrs_W_4_t
-            - rrrrs_W_4_t_2) + rrrrs_acc_4_o_y*rrrrs_h_4_x - rrrrs_B_4_o_xy*rrrrs_Sigma_4_yy -
-            rrrrs_B_4_o_yz*rrrrs_J_4_xz - rrrrs_acc_4_o_x*rrrrs_h_4_y
+        rrrrs_mu_4_o_in_axes4_z = (
+        rrrrs_B_4_o_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
+            rrrrs_B_4_o_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t
+            - rrrrs_W_1_t_2) + rrrrs_acc_4_o_in_axes4_y*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_o_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
+            rrrrs_B_4_o_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
+            rrrrs_acc_4_o_in_axes4_x*rrrrs_h_4_in_spec4_y
         )
-        # (rrrrs-B_2_o) remainder of the acceleration tensor of link 2
-        rrrrs_B_2_o_zx = rrrrs_zeta_2_y - rrrrs_alpha_2_o_y
-        rrrrs_B_2_o_zy = rrrrs_alpha_2_o_x - rrrrs_zeta_2_x
-        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
-        rrrrs_a_o_3_o_t = rrrrs_joint3_offset_x*(rrrrs_W_2_t_2 + rrrrs_W_2_t_3)
-        rrrrs_a_o_3_o_t_2 = rrrrs_W_2_xy*rrrrs_joint3_offset_x
-        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rrrrs_g_r1_x = rrrrs_g_r0_y*rrrrs_s_1 - rrrrs_c_1*rrrrs_g_r0_x
-        rrrrs_g_r1_y = -rrrrs_c_1*rrrrs_g_r0_y - rrrrs_g_r0_x*rrrrs_s_1
-        rrrrs_g_r3_x = rrrrs_g_r0_z*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_g_r1_y
-        rrrrs_g_r3_y = -rrrrs_c_2_t*rrrrs_g_r0_z - rrrrs_g_r1_y*rrrrs_s_2
-        rrrrs_acc_3_o_x = (
-        -rrrrs_a_o_3_o_t*rrrrs_c_3 - rrrrs_a_o_3_o_t_2*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_r3_x -
-            rrrrs_g_r3_y*rrrrs_s_3
-        )
-        rrrrs_acc_3_o_y = (
-        rrrrs_a_o_3_o_t*rrrrs_s_3 + rrrrs_g_r3_x*rrrrs_s_3 - rrrrs_a_o_3_o_t_2*rrrrs_c_3 -
-            rrrrs_c_3*rrrrs_g_r3_y
-        )
-        rrrrs_acc_3_o_z = rrrrs_B_2_o_zx*rrrrs_joint3_offset_x - rrrrs_g_r1_x
-        # (rrrrs-B_3_o) remainder of the acceleration tensor of link 3
-        rrrrs_B_3_o_xy = rrrrs_W_3_xy + rrrrs_qdd_3_o
-        rrrrs_B_3_o_xz = rrrrs_W_3_xz + rrrrs_alpha_3_o_y
-        rrrrs_B_3_o_yx = rrrrs_W_3_xy - rrrrs_qdd_3_o
-        rrrrs_B_3_o_yz = rrrrs_W_3_yz - rrrrs_alpha_3_o_x
-        rrrrs_B_3_o_zx = rrrrs_W_3_xz - rrrrs_alpha_3_o_y
-        rrrrs_B_3_o_zy = rrrrs_W_3_yz + rrrrs_alpha_3_o_x
         # (rrrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        rrrrs_mu_3_o_x = (
-        rrrrs_B_3_o_yx*rrrrs_J_3_xz + rrrrs_B_3_o_zy*rrrrs_Sigma_3_yy +
-            rrrrs_J_3_yz*(rrrrs_W_3_t_2 - rrrrs_W_3_t_3) + rrrrs_acc_3_o_z*rrrrs_h_3_y -
-            rrrrs_B_3_o_yz*rrrrs_Sigma_3_zz - rrrrs_B_3_o_zx*rrrrs_J_3_xy -
-            rrrrs_acc_3_o_y*rrrrs_h_3_z
+        rrrrs_mu_3_o_in_axes3_x = (
+        rrrrs_B_3_o_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
+            rrrrs_B_3_o_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy +
+            rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_o_t_2 - rrrrs_bias_t_2) +
+            rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_y -
+            rrrrs_B_3_o_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
+            rrrrs_B_3_o_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
+            rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_z
         )
-        rrrrs_mu_3_o_y = (
-        rrrrs_B_3_o_xz*rrrrs_Sigma_3_zz + rrrrs_B_3_o_zy*rrrrs_J_3_xy +
-            rrrrs_acc_3_o_x*rrrrs_h_3_z - rrrrs_B_3_o_xy*rrrrs_J_3_yz -
-            rrrrs_B_3_o_zx*rrrrs_Sigma_3_xx - rrrrs_J_3_xz*(rrrrs_W_3_t - rrrrs_W_3_t_3) -
-            rrrrs_acc_3_o_z*rrrrs_h_3_x
+        rrrrs_mu_3_o_in_axes3_y = (
+        rrrrs_B_3_o_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
+            rrrrs_B_3_o_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_z -
+            rrrrs_B_3_o_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
+            rrrrs_B_3_o_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx -
+            rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_o_t - rrrrs_bias_t_2) -
+            rrrrs_acc_3_o_in_axes3_z*rrrrs_h_3_in_spec3_x
         )
-        rrrrs_mu_3_o_z = (
-        rrrrs_B_3_o_xz*rrrrs_J_3_yz + rrrrs_B_3_o_yx*rrrrs_Sigma_3_xx + rrrrs_J_3_xy*(rrrrs_W_3_t
-            - rrrrs_W_3_t_2) + rrrrs_acc_3_o_y*rrrrs_h_3_x - rrrrs_B_3_o_xy*rrrrs_Sigma_3_yy -
-            rrrrs_B_3_o_yz*rrrrs_J_3_xz - rrrrs_acc_3_o_x*rrrrs_h_3_y
+        rrrrs_mu_3_o_in_axes3_z = (
+        rrrrs_B_3_o_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
+            rrrrs_B_3_o_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx +
+            rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_o_t - rrrrs_f_3_o_t_2) +
+            rrrrs_acc_3_o_in_axes3_y*rrrrs_h_3_in_spec3_x -
+            rrrrs_B_3_o_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
+            rrrrs_B_3_o_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
+            rrrrs_acc_3_o_in_axes3_x*rrrrs_h_3_in_spec3_y
         )
         # (rrrrs-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        rrrrs_N_3_o_x = rrrrs_mu_3_o_x + rrrrs_c_4*rrrrs_mu_4_o_x + rrrrs_mu_4_o_y*rrrrs_s_4
-        rrrrs_N_3_o_y = rrrrs_mu_3_o_y + rrrrs_c_4*rrrrs_mu_4_o_y - rrrrs_mu_4_o_x*rrrrs_s_4
-        rrrrs_N_3_o_z = rrrrs_mu_3_o_z + rrrrs_mu_4_o_z
-        # (rrrrs-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
-        rrrrs_f_3_o_x = (
-        rrrrs_B_3_o_xy*rrrrs_h_3_y + rrrrs_B_3_o_xz*rrrrs_h_3_z + rrrrs_acc_3_o_x*rrrrs_link3_mass
-            - rrrrs_h_3_x*(rrrrs_W_3_t_2 + rrrrs_W_3_t_3)
+        rrrrs_N_3_o_in_axes3_x = (
+        rrrrs_mu_3_o_in_axes3_x + rrrrs_c_4*rrrrs_mu_4_o_in_axes4_x +
+            rrrrs_mu_4_o_in_axes4_y*rrrrs_s_4_t
         )
-        rrrrs_f_3_o_y = (
-        rrrrs_B_3_o_yx*rrrrs_h_3_x + rrrrs_B_3_o_yz*rrrrs_h_3_z + rrrrs_acc_3_o_y*rrrrs_link3_mass
-            - rrrrs_h_3_y*(rrrrs_W_3_t + rrrrs_W_3_t_3)
+        rrrrs_N_3_o_in_axes3_y = (
+        rrrrs_mu_3_o_in_axes3_y + rrrrs_c_4*rrrrs_mu_4_o_in_axes4_y -
+            rrrrs_mu_4_o_in_axes4_x*rrrrs_s_4_t
         )
-        rrrrs_f_3_o_z = (
-        rrrrs_B_3_o_zx*rrrrs_h_3_x + rrrrs_B_3_o_zy*rrrrs_h_3_y + rrrrs_acc_3_o_z*rrrrs_link3_mass
-            - rrrrs_h_3_z*(rrrrs_W_3_t + rrrrs_W_3_t_2)
-        )
+        rrrrs_N_3_o_in_axes3_z = rrrrs_mu_3_o_in_axes3_z + rrrrs_mu_4_o_in_axes4_z
         # (rrrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrrrs_mu_2_o_x = (
-        rrrrs_B_2_o_zy*rrrrs_Sigma_2_yy + rrrrs_J_2_yz*(rrrrs_W_2_t_2 - rrrrs_W_2_t_3) +
-            rrrrs_Sigma_2_zz*rrrrs_alpha_1_o_t + rrrrs_g_r3_y*rrrrs_h_2_z -
-            rrrrs_B_2_o_zx*rrrrs_J_2_xy - rrrrs_J_2_xz*rrrrs_W_2_xy - rrrrs_g_r1_x*rrrrs_h_2_y
+        rrrrs_mu_2_o_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
+        rrrrs_mu_2_o_in_axes2_x = (
+        rrrrs_B_2_o_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy +
+            rrrrs_J_2_in_spec2_xz*rrrrs_W_2_in_axes2_xy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t -
+            rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_x +
+            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z -
+            rrrrs_B_2_o_in_axes2_zx*rrrrs_J_2_in_spec2_xy -
+            rrrrs_g_in_axes1_x*rrrrs_h_2_in_spec2_y
         )
-        rrrrs_mu_2_o_y = (
-        rrrrs_B_2_o_zy*rrrrs_J_2_xy + rrrrs_J_2_yz*rrrrs_W_2_xy + rrrrs_g_r1_x*rrrrs_h_2_x -
-            rrrrs_B_2_o_zx*rrrrs_Sigma_2_xx - rrrrs_J_2_xz*(rrrrs_W_2_t - rrrrs_W_2_t_3) -
-            rrrrs_Sigma_2_zz*rrrrs_alpha_1_o_t_2 - rrrrs_g_r3_x*rrrrs_h_2_z
+        rrrrs_mu_2_o_in_axes2_y = (
+        rrrrs_B_2_o_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_o_in_axes2_y +
+            rrrrs_g_in_axes1_x*rrrrs_h_2_in_spec2_x -
+            rrrrs_B_2_o_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
+            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_o_t - rrrrs_bias_t) -
+            rrrrs_J_2_in_spec2_yz*rrrrs_W_2_in_axes2_xy - rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z
         )
-        rrrrs_mu_2_o_z = (
-        rrrrs_J_2_xy*(rrrrs_W_2_t - rrrrs_W_2_t_2) + rrrrs_J_2_xz*rrrrs_alpha_1_o_t +
-            rrrrs_Sigma_2_yy*rrrrs_W_2_xy + rrrrs_g_r3_x*rrrrs_h_2_y -
-            rrrrs_J_2_yz*rrrrs_alpha_1_o_t_2 - rrrrs_Sigma_2_xx*rrrrs_W_2_xy -
-            rrrrs_g_r3_y*rrrrs_h_2_x
+        rrrrs_mu_2_o_in_axes2_z = (
+        rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_o_t - rrrrs_a_o_3_t) +
+            rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_o_in_axes2_x +
+            rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_o_in_axes2_y +
+            rrrrs_Sigma_2_in_axes2_xx*rrrrs_W_2_in_axes2_xy +
+            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
+            rrrrs_Sigma_2_in_axes2_yy*rrrrs_W_2_in_axes2_xy -
+            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x
         )
         # (rrrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrrs_N_2_o_x = rrrrs_mu_2_o_x + rrrrs_N_3_o_x*rrrrs_c_3 - rrrrs_N_3_o_y*rrrrs_s_3
-        rrrrs_N_2_o_y = (
-        rrrrs_mu_2_o_y + rrrrs_N_3_o_x*rrrrs_s_3 + rrrrs_N_3_o_y*rrrrs_c_3 -
-            rrrrs_f_3_o_z*rrrrs_joint3_offset_x
+        rrrrs_N_2_o_in_axes2_x = (
+        rrrrs_mu_2_o_in_axes2_x + rrrrs_N_3_o_in_axes3_x*rrrrs_c_3 -
+            rrrrs_N_3_o_in_axes3_y*rrrrs_s_3
         )
-        rrrrs_N_2_o_z = (
-        rrrrs_N_3_o_z + rrrrs_mu_2_o_z + rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_y +
-            rrrrs_f_3_o_x*rrrrs_s_3)
+        rrrrs_N_2_o_in_axes2_y = (
+        rrrrs_mu_2_o_in_axes2_y + rrrrs_N_3_o_in_axes3_x*rrrrs_s_3 +
+            rrrrs_N_3_o_in_axes3_y*rrrrs_c_3 - rrrrs_f_3_o_in_axes3_z*rrrrs_joint3_offset_x
+        )
+        rrrrs_N_2_o_in_axes2_z = (
+        rrrrs_N_3_o_in_axes3_z + rrrrs_mu_2_o_in_axes2_z +
+            rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_o_in_axes3_y +
+            rrrrs_f_3_o_in_axes3_x*rrrrs_s_3)
         )
         # (rrrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrrrs_mu_1_o_z = (
-        rrrrs_J_1_xx*rrrrs_qdd_1_o - rrrrs_g_r1_x*rrrrs_h_1_y - rrrrs_g_r1_y*rrrrs_h_1_z
+        rrrrs_mu_1_o_in_axes1_z = (
+        rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1_o - rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_y -
+            rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_z
         )
         # (rrrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrrs_N_1_o_z = rrrrs_mu_1_o_z + rrrrs_N_2_o_x*rrrrs_s_2 - rrrrs_N_2_o_y*rrrrs_c_2_t
+        rrrrs_N_1_o_in_axes1_z = (
+        rrrrs_mu_1_o_in_axes1_z + rrrrs_N_2_o_in_axes2_x*rrrrs_s_2 +
+            rrrrs_N_2_o_in_axes2_y*rrrrs_c_2
+        )
         # (rrrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_G_o_t = inv_rrrrs_platform_joint_offset_x*rrrrs_mu_4_o_z
-        rrrrs_G_o_t_2 = inv_rrrrs_r_3_r0_y*(rrrrs_G_o_t*rrrrs_r_3_r0_x - rrrrs_N_3_o_z)
+        rrrrs_G_o_in_axes4_y = rrrrs_mu_4_o_in_axes4_z*rrrrs_w_4_in_axes4_y
+        rrrrs_G_o_in_axes4_x = (
+        -rrrrs_w_3_in_axes4_x*(rrrrs_G_o_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_o_in_axes3_z)
+        )
         # (rrrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrrs_c_o_x = (
-        rrrrs_W_4_xx*rrrrs_h_4_x - rrrrs_G_o_t_2 - rrrrs_B_4_o_xy*rrrrs_h_4_y -
-            rrrrs_B_4_o_xz*rrrrs_h_4_z
+        rrrrs_c_o_in_axes4_x = (
+        rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_o_in_axes4_x -
+            rrrrs_B_4_o_in_axes4_xy*rrrrs_h_4_in_spec4_y -
+            rrrrs_B_4_o_in_axes4_xz*rrrrs_h_4_in_spec4_z
         )
-        rrrrs_c_o_y = (
-        rrrrs_h_4_y*(rrrrs_W_4_t + rrrrs_W_4_t_3) - rrrrs_G_o_t - rrrrs_B_4_o_yx*rrrrs_h_4_x -
-            rrrrs_B_4_o_yz*rrrrs_h_4_z
+        rrrrs_c_o_in_axes4_y = (
+        rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) - rrrrs_G_o_in_axes4_y -
+            rrrrs_B_4_o_in_axes4_yx*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_o_in_axes4_yz*rrrrs_h_4_in_spec4_z
         )
-        rrrrs_c_o_z = (
-        rrrrs_h_4_z*(rrrrs_W_4_t + rrrrs_W_4_t_2) - inv_rrrrs_v_1_z*rrrrs_N_1_o_z -
-            rrrrs_B_4_o_zx*rrrrs_h_4_x - rrrrs_B_4_o_zy*rrrrs_h_4_y
+        rrrrs_c_o_in_axes4_z = (
+        rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
+            rrrrs_B_4_o_in_axes4_zx*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_o_in_axes4_zy*rrrrs_h_4_in_spec4_y -
+            rrrrs_N_1_o_in_axes1_z*rrrrs_w_1_in_axes4_z
         )
         # (rrrrs-U) velocity and gravity terms of the leg force
-        rrrrs_U_in_base_x = (
-        -axis_x_rrrrs_axes4_x*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_x*rrrrs_c_o_y -
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_c_o_z
+        rrrrs_U_x = (
+        -axis_x_rrrrs_axes4_x*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_x*rrrrs_c_o_in_axes4_y -
+            axis_z_rrrrs_axes4_x*rrrrs_c_o_in_axes4_z
         )
-        rrrrs_U_in_base_y = (
-        -axis_x_rrrrs_axes4_y*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_y*rrrrs_c_o_y -
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_c_o_z
+        rrrrs_U_y = (
+        -axis_x_rrrrs_axes4_y*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_y*rrrrs_c_o_in_axes4_y -
+            axis_z_rrrrs_axes4_y*rrrrs_c_o_in_axes4_z
         )
-        rrrrs_U_in_base_z = (
-        -axis_x_rrrrs_axes4_z*rrrrs_c_o_x - axis_y_rrrrs_axes4_in_base_z*rrrrs_c_o_y -
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_c_o_z
+        rrrrs_U_z = (
+        -axis_x_rrrrs_axes4_z*rrrrs_c_o_in_axes4_x - axis_y_rrrrs_axes4_z*rrrrs_c_o_in_axes4_y -
+            axis_z_rrrrs_axes4_z*rrrrs_c_o_in_axes4_z
         )
-        # (Z_a) rotational part of Z
-        rrrrs_Z_a_t = rrrrs_U_in_base_z*rrrrs_q_in_base_y - rrrrs_U_in_base_y*rrrrs_q_in_base_z
-        rrrrs_Z_a_t_2 = rrrrs_U_in_base_x*rrrrs_q_in_base_z - rrrrs_U_in_base_z*rrrrs_q_in_base_x
-        rrrrs_Z_a_t_3 = rrrrs_U_in_base_y*rrrrs_q_in_base_x - rrrrs_U_in_base_x*rrrrs_q_in_base_y
         # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
-        rrrrs_P_2_o_t = rrrrs_G_o_t_2*rrrrs_r_2_r1_y - rrrrs_G_o_t*rrrrs_r_2_r1_x
-        rrrrs_P_2_o = rrrrs_N_2_o_z + rrrrs_P_2_o_t
+        rrrrs_P_2_o_t = (
+        rrrrs_G_o_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_o_in_axes4_y*rrrrs_r_2_in_axes4_x
+        )
+        rrrrs_P_2_o = rrrrs_N_2_o_in_axes2_z + rrrrs_P_2_o_t
+        # (Z_a) rotational part of Z
+        rrrrs_Z_a_t = rrrrs_U_z*rrrrs_q_y - rrrrs_U_y*rrrrs_q_z
+        rrrrs_Z_a_t_2 = rrrrs_U_x*rrrrs_q_z - rrrrs_U_z*rrrrs_q_x
+        rrrrs_Z_a_t_3 = rrrrs_U_y*rrrrs_q_x - rrrrs_U_x*rrrrs_q_y
         ok = (
         ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
-            rrrrs_size))
+            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrrs_U_in_base_x, rrrrs_U_in_base_y, rrrrs_U_in_base_z, rrrrs_Z_a_t, rrrrs_Z_a_t_2,
-            rrrrs_Z_a_t_3,
+        rrrrs_U_x, rrrrs_U_y, rrrrs_U_z, rrrrs_Z_a_t, rrrrs_Z_a_t_2, rrrrs_Z_a_t_3,
         ))
+        # (rrrrs-P_2_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
         out_Z[_Z_rrrrs[0][leg]] = rrrrs_P_2_o
-    (
-    total_rrrrs_x, total_rrrrs_y, total_rrrrs_z, total_rrrrs_x_2, total_rrrrs_y_2,
-        total_rrrrs_z_2,
-    ) = sums
+    Z_t_rrrrs_x, Z_t_rrrrs_y, Z_t_rrrrs_z, Z_a_rrrrs_x, Z_a_rrrrs_y, Z_a_rrrrs_z = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
-            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+            rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -4942,336 +5316,371 @@ def _run_Z(m, X, V):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        # (rrrs-W_3) centripetal tensor of link 3
+        rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
+        rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-u_1) centripetal acceleration of the connection point
         rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
-        # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
-        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
-        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
-        # (rrrs-W_3) centripetal tensor of link 3
-        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
-        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
-        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
-        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
-        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
-        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
-        # (rrrs-u_1) centripetal acceleration of the connection point
-        rrrs_u_1_tip_x = (
+        rrrs_u_1_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_u_1_x + axis_x_rrrs_axes3_y*rrrs_u_1_y +
             axis_x_rrrs_axes3_z*rrrs_u_1_z
         )
-        rrrs_u_1_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_y_rrrs_axes3_in_base_y*rrrs_u_1_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_u_1_z
+        rrrs_u_1_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_u_1_x + axis_y_rrrs_axes3_y*rrrs_u_1_y +
+            axis_y_rrrs_axes3_z*rrrs_u_1_z
         )
-        rrrs_u_1_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_u_1_x + axis_z_rrrs_axes3_in_base_y*rrrs_u_1_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_u_1_z
+        rrrs_u_1_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_u_1_x + axis_z_rrrs_axes3_y*rrrs_u_1_y +
+            axis_z_rrrs_axes3_z*rrrs_u_1_z
+        )
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrrs_rel_o_x = rrrs_u_1_tip_x - rrrs_bias_x
-        rrrs_rel_o_y = rrrs_u_1_tip_y - rrrs_bias_y
-        rrrs_rel_o_z = rrrs_u_1_tip_z - rrrs_bias_z
-        # (rrrs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        rrrs_qdd_2_o = inv_rrrs_r_2_r0_y*rrrs_rel_o_x
-        rrrs_qdd_1_o = inv_rrrs_v_1_z*rrrs_rel_o_z
+        rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z
+        # (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
-        rrrs_alpha_1_o_t_2 = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2
+        rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o
         # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrrs_alpha_2_o_x = rrrs_zeta_2_x - rrrs_alpha_1_o_t
-        rrrs_alpha_2_o_y = -rrrs_alpha_1_o_t_2 - rrrs_zeta_2_y
+        rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t
+        rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz
+        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
+        rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o
+        rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
+        rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y
+        rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
         # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        rrrs_alpha_3_o_x = (
-        rrrs_alpha_2_o_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_o_y*rrrs_s_3
+        rrrs_alpha_3_o_in_axes3_x = (
+        rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+            rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t
         )
-        rrrs_alpha_3_o_y = rrrs_alpha_2_o_x*rrrs_s_3 + rrrs_alpha_2_o_y*rrrs_c_3 - rrrs_zeta_3_y
-        rrrs_alpha_3_o_z = (
-        inv_rrrs_platform_joint_offset_x*(rrrs_rel_o_y + rrrs_qdd_2_o*rrrs_r_2_r0_x) -
-            rrrs_qdd_2_o
+        rrrs_alpha_3_o_in_axes3_y = (
+        rrrs_alpha_2_o_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_o_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
+        )
+        rrrs_alpha_3_o_in_axes3_z = (
+        rrrs_qdd_2_o + rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y -
+            rrrs_qdd_2_o*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-B_3_o) remainder of the acceleration tensor of link 3
-        rrrs_B_3_o_xy = rrrs_W_3_xy - rrrs_alpha_3_o_z
-        rrrs_B_3_o_xz = rrrs_W_3_xz + rrrs_alpha_3_o_y
-        rrrs_B_3_o_yx = rrrs_W_3_xy + rrrs_alpha_3_o_z
-        rrrs_B_3_o_yz = rrrs_W_3_yz - rrrs_alpha_3_o_x
-        rrrs_B_3_o_zx = rrrs_W_3_xz - rrrs_alpha_3_o_y
-        rrrs_B_3_o_zy = rrrs_W_3_yz + rrrs_alpha_3_o_x
+        rrrs_B_3_o_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z
+        rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y
+        rrrs_B_3_o_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z
+        rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x
+        rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y
+        rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x
         # (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_o_x = (
-        rrrs_u_1_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+        rrrs_acc_3_o_in_axes3_x = (
+        rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
             axis_x_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_y = (
-        rrrs_u_1_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
+        rrrs_acc_3_o_in_axes3_y = (
+        rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+            axis_y_rrrs_axes3_z*gravity_z
         )
-        rrrs_acc_3_o_z = (
-        rrrs_u_1_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
+        rrrs_acc_3_o_in_axes3_z = (
+        rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+            axis_z_rrrs_axes3_z*gravity_z
         )
         # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_o_x = (
-        rrrs_B_3_o_yx*rrrs_J_3_xz + rrrs_B_3_o_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
-            rrrs_W_3_t_3) + rrrs_acc_3_o_z*rrrs_h_3_y - rrrs_B_3_o_yz*rrrs_Sigma_3_zz -
-            rrrs_B_3_o_zx*rrrs_J_3_xy - rrrs_acc_3_o_y*rrrs_h_3_z
+        rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_o_in_axes3_x = (
+        rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
+            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z
         )
-        rrrs_mu_3_o_y = (
-        rrrs_B_3_o_xz*rrrs_Sigma_3_zz + rrrs_B_3_o_zy*rrrs_J_3_xy + rrrs_acc_3_o_x*rrrs_h_3_z -
-            rrrs_B_3_o_xy*rrrs_J_3_yz - rrrs_B_3_o_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
-            rrrs_W_3_t_3) - rrrs_acc_3_o_z*rrrs_h_3_x
+        rrrs_mu_3_o_in_axes3_y = (
+        rrrs_B_3_o_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+            rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x
         )
-        rrrs_mu_3_o_z = (
-        rrrs_B_3_o_xz*rrrs_J_3_yz + rrrs_B_3_o_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
-            rrrs_W_3_t_2) + rrrs_acc_3_o_y*rrrs_h_3_x - rrrs_B_3_o_xy*rrrs_Sigma_3_yy -
-            rrrs_B_3_o_yz*rrrs_J_3_xz - rrrs_acc_3_o_x*rrrs_h_3_y
+        rrrs_mu_3_o_in_axes3_z = (
+        rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
+            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
+            rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
-        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
-        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
-        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
-        # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
-        rrrs_B_2_o_xy = rrrs_W_2_xy + rrrs_qdd_2_o
-        rrrs_B_2_o_yx = rrrs_W_2_xy - rrrs_qdd_2_o
-        rrrs_B_2_o_zx = rrrs_zeta_2_y - rrrs_alpha_2_o_y
-        rrrs_B_2_o_zy = rrrs_alpha_2_o_x + rrrs_zeta_2_x
         # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_o_x = (
-        rrrs_B_2_o_yx*rrrs_J_2_xz + rrrs_B_2_o_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
-            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_o_zx*rrrs_J_2_xy -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t - rrrs_g_r1_x*rrrs_h_2_y
+        rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_mu_2_o_in_axes2_x = (
+        rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+            rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
+            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
         )
-        rrrs_mu_2_o_y = (
-        rrrs_B_2_o_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_o_xy*rrrs_J_2_yz -
-            rrrs_B_2_o_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        rrrs_mu_2_o_in_axes2_y = (
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
+            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
-        rrrs_mu_2_o_z = (
-        rrrs_B_2_o_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
-            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_o_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_o_t
-            - rrrs_J_2_yz*rrrs_alpha_1_o_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        rrrs_mu_2_o_in_axes2_z = (
+        rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
+            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+            rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrs_N_2_o_x = rrrs_mu_2_o_x + rrrs_c_3*rrrs_mu_3_o_x + rrrs_mu_3_o_y*rrrs_s_3
-        rrrs_N_2_o_y = rrrs_mu_2_o_y + rrrs_c_3*rrrs_mu_3_o_y - rrrs_mu_3_o_x*rrrs_s_3
-        rrrs_N_2_o_z = rrrs_mu_2_o_z + rrrs_mu_3_o_z
+        rrrs_N_2_o_in_axes2_x = (
+        rrrs_mu_2_o_in_axes2_x + rrrs_c_3*rrrs_mu_3_o_in_axes3_x +
+            rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t
+        )
+        rrrs_N_2_o_in_axes2_y = (
+        rrrs_mu_2_o_in_axes2_y + rrrs_c_3*rrrs_mu_3_o_in_axes3_y -
+            rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t
+        )
+        rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
         # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_o_z = rrrs_J_1_xx*rrrs_qdd_1_o - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        rrrs_mu_1_o_in_axes1_z = (
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        )
         # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrs_N_1_o_z = rrrs_mu_1_o_z - rrrs_N_2_o_x*rrrs_s_2 - rrrs_N_2_o_y*rrrs_c_2
+        rrrs_N_1_o_in_axes1_z = (
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2 + rrrs_N_2_o_in_axes2_y*rrrs_c_2
+        )
         # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_G_o_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_o_z
+        rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrrs_c_o_x = (
-        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_o_t*rrrs_r_2_r0_x -
-            rrrs_N_2_o_z) - rrrs_B_3_o_xy*rrrs_h_3_y - rrrs_B_3_o_xz*rrrs_h_3_z
+        rrrs_c_o_in_axes3_x = (
+        rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
+            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_o_y = (
-        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_o_t - rrrs_B_3_o_yx*rrrs_h_3_x -
-            rrrs_B_3_o_yz*rrrs_h_3_z
+        rrrs_c_o_in_axes3_y = (
+        rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) - rrrs_G_o_in_axes3_y -
+            rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_o_z = (
-        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_o_z -
-            rrrs_B_3_o_zx*rrrs_h_3_x - rrrs_B_3_o_zy*rrrs_h_3_y
+        rrrs_c_o_in_axes3_z = (
+        rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
+            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y - rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-U) velocity and gravity terms of the leg force
-        rrrs_U_in_base_x = (
-        -axis_x_rrrs_axes3_x*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_x*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_x*rrrs_c_o_z
+        rrrs_U_x = (
+        -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z
         )
-        rrrs_U_in_base_y = (
-        -axis_x_rrrs_axes3_y*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_y*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_y*rrrs_c_o_z
+        rrrs_U_y = (
+        -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z
         )
-        rrrs_U_in_base_z = (
-        -axis_x_rrrs_axes3_z*rrrs_c_o_x - axis_y_rrrs_axes3_in_base_z*rrrs_c_o_y -
-            axis_z_rrrs_axes3_in_base_z*rrrs_c_o_z
+        rrrs_U_z = (
+        -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x - axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y -
+            axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z
         )
         # (Z_a) rotational part of Z
-        rrrs_Z_a_t = rrrs_U_in_base_z*rrrs_q_in_base_y - rrrs_U_in_base_y*rrrs_q_in_base_z
-        rrrs_Z_a_t_2 = rrrs_U_in_base_x*rrrs_q_in_base_z - rrrs_U_in_base_z*rrrs_q_in_base_x
-        rrrs_Z_a_t_3 = rrrs_U_in_base_y*rrrs_q_in_base_x - rrrs_U_in_base_x*rrrs_q_in_base_y
+        rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z
+        rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x
+        rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrs_U_in_base_x, rrrs_U_in_base_y, rrrs_U_in_base_z, rrrs_Z_a_t, rrrs_Z_a_t_2,
-            rrrs_Z_a_t_3,
+        rrrs_U_x, rrrs_U_y, rrrs_U_z, rrrs_Z_a_t, rrrs_Z_a_t_2, rrrs_Z_a_t_3,
         ))
-    (
-    total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
-    ) = sums
+    Z_t_rrrs_x, Z_t_rrrs_y, Z_t_rrrs_z, Z_a_rrrs_x, Z_a_rrrs_y, Z_a_rrrs_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rrrrs_x + total_rrrs_x
-    Z_t_y = Z_p_y + total_rrrrs_y + total_rrrs_y
-    Z_t_z = Z_p_z + total_rrrrs_z + total_rrrs_z
+    Z_t_x = Z_p_x + Z_t_rrrrs_x + Z_t_rrrs_x
+    Z_t_y = Z_p_y + Z_t_rrrrs_y + Z_t_rrrs_y
+    Z_t_z = Z_p_z + Z_t_rrrrs_z + Z_t_rrrs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rrrrs_x_2 + total_rrrs_x_2
-    Z_a_y = Z_q_in_base_y + total_rrrrs_y_2 + total_rrrs_y_2
-    Z_a_z = Z_q_in_base_z + total_rrrrs_z_2 + total_rrrs_z_2
+    Z_a_x = Z_a_rrrrs_x + Z_a_rrrs_x + Z_q_x
+    Z_a_y = Z_a_rrrrs_y + Z_a_rrrs_y + Z_q_y
+    Z_a_z = Z_a_rrrrs_z + Z_a_rrrs_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -5323,30 +5732,30 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+            rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
         # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        rrrrs_c_2 = -sin(rrrrs_y_2_extra)
         # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
         rrrrs_s_2 = cos(rrrrs_y_2_extra)
         # (rrrrs-px_1) component along the reference direction
@@ -5363,153 +5772,150 @@ def _run_H(m, X):
         rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
         # (rrrrs-root_1) root, with the sign of the branch
         rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = -inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
         # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
+        rrrrs_xi_1_in_axes1_z = (
         rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
             rrrrs_S_z*rrrrs_base_frame_zx
         )
         # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_in_axes1_z = rrrrs_xi_1_in_axes1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_x = rrrrs_s_2*rrrrs_x_2_in_axes1_z - rrrrs_x_2_t
         rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_x_2_in_axes1_z
         # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
         # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        rrrrs_Kd_3_t = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
         # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
         # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
         # (rrrrs-rho2_3) squared amplitude
         rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
         # (rrrrs-disc_3) discriminant
         rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
         # (rrrrs-root_3) root, with the sign of the branch
         rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
-        )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
         # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
         inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
         rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
         # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
-            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
-            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        )
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_platform_joint_offset_x*rrrrs_s_4
-        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
-        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_y = (
+        rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        )
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_s_3 + rrrrs_c_3*rrrrs_s_2
+        rrrrs_v_1_t_2 = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_3 = rrrrs_s_2*rrrrs_xi_1_in_axes1_z - rrrrs_x_2_t
+        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_xi_1_in_axes1_z
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
+            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
+            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        )
         # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        rrrrs_w_1_x = axis_z_rrrrs_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
-        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
-        rrrrs_dy_2_qdd_3 = (
-        inv_rrrrs_r_3_r0_y*(rrrrs_c_4*(rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x) +
-            rrrrs_s_4*(rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y))
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_s_1*rrrrs_w_3_t_3
+        rrrrs_w_3_t_6 = rrrrs_c_1*rrrrs_w_3_t_3
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_base_frame_xx*rrrrs_w_3_t_4 + rrrrs_base_frame_xz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_xy*rrrrs_w_3_t_5
         )
-        # (rrrrs-w_1) reciprocal vector 1
-        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_base_frame_yx*rrrrs_w_3_t_4 + rrrrs_base_frame_yz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_yy*rrrrs_w_3_t_5
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_base_frame_zx*rrrrs_w_3_t_4 + rrrrs_base_frame_zz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_zy*rrrrs_w_3_t_5
+        )
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = (
+        rrrrs_w_3_in_axes4_x*(rrrrs_c_4*(rrrrs_c_3*rrrrs_x_2_in_axes2_y -
+            rrrrs_s_3*rrrrs_x_2_in_axes2_x) + rrrrs_s_4_t*(rrrrs_c_3*rrrrs_x_2_in_axes2_x +
+            rrrrs_s_3*rrrrs_x_2_in_axes2_y))
+        )
+        rrrrs_w_3_x = (
+        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z -
+            axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y)
+        )
+        rrrrs_w_3_y = (
+        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x -
+            axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z)
+        )
+        rrrrs_w_3_z = (
+        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
+            axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x)
+        )
         # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrrs_H_a_1_x = rrrrs_q_in_base_y*rrrrs_w_1_t_5 - rrrrs_q_in_base_z*rrrrs_w_1_t_4
-        rrrrs_H_a_1_y = rrrrs_q_in_base_z*rrrrs_w_1_t_3 - rrrrs_q_in_base_x*rrrrs_w_1_t_5
-        rrrrs_H_a_1_z = rrrrs_q_in_base_x*rrrrs_w_1_t_4 - rrrrs_q_in_base_y*rrrrs_w_1_t_3
-        # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = (
-        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y)
-        )
-        rrrrs_w_3_t_2 = (
-        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z)
-        )
-        rrrrs_w_3_t_3 = (
-        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x)
-        )
+        rrrrs_H_a_1_x = rrrrs_q_y*rrrrs_w_1_z - rrrrs_q_z*rrrrs_w_1_y
+        rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
+        rrrrs_H_a_1_z = rrrrs_q_x*rrrrs_w_1_y - rrrrs_q_y*rrrrs_w_1_x
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
-        rrrrs_H_a_3_x = rrrrs_q_in_base_z*rrrrs_w_3_t_2 - rrrrs_q_in_base_y*rrrrs_w_3_t_3
-        rrrrs_H_a_3_y = rrrrs_q_in_base_x*rrrrs_w_3_t_3 - rrrrs_q_in_base_z*rrrrs_w_3_t
-        rrrrs_H_a_3_z = rrrrs_q_in_base_y*rrrrs_w_3_t - rrrrs_q_in_base_x*rrrrs_w_3_t_2
+        rrrrs_H_a_3_x = rrrrs_q_y*rrrrs_w_3_z - rrrrs_q_z*rrrrs_w_3_y
+        rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
+        rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
         ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
-            rrrrs_size))
+            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size))
         )
-        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_t_3
-        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_t_4
-        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        # (rrrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
+        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_y
+        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_z
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[3][leg]] = rrrrs_H_a_1_x
         out_H[_H_rrrrs[4][leg]] = rrrrs_H_a_1_y
         out_H[_H_rrrrs[5][leg]] = rrrrs_H_a_1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_rrrrs[6][leg]] = 1.0
-        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t
-        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_2
-        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_3
+        # (rrrrs-w_3) reciprocal vector 2
+        out_H[_H_rrrrs[7][leg]] = rrrrs_w_3_x
+        out_H[_H_rrrrs[8][leg]] = rrrrs_w_3_y
+        out_H[_H_rrrrs[9][leg]] = rrrrs_w_3_z
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
         out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
-        out_H[_H_rrrrs[13][leg]] = -rrrrs_dy_2_qdd_3
+        # (rrrrs-w_3) reciprocal vector 2
+        out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
     for leg, k in legs[1]:
         (
         inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
@@ -5521,18 +5927,18 @@ def _run_H(m, X):
             rrrs_size, rrrs_size_t_3,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -5545,119 +5951,122 @@ def _run_H(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_y = (
+        rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y)
+        )
+        rrrs_w_2_y = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z)
+        )
+        rrrs_w_2_z = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
+        )
         # (rrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
-        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
-        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
-        )
-        rrrs_w_2_t_2 = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
-        )
-        rrrs_w_2_t_3 = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
-        )
+        rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
+        rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
+        rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x
         # (rrrs-H_a_2) moment of the column's unit force about the platform origin
-        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
-        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
-        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y
+        rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
+        rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
-        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        # (rrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
         out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
         out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
-        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        out_H[_H_rrrs[6][leg]] = rrrs_w_2_x
+        out_H[_H_rrrs[7][leg]] = rrrs_w_2_y
+        out_H[_H_rrrs[8][leg]] = rrrs_w_2_z
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
@@ -5671,8 +6080,9 @@ def _run_required(m, X, V, A):
     cos = m.cos
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -5738,105 +6148,120 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-            rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yz,
-            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
-            rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx,
-            rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy,
-            rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x, rrrrs_g_r0_y,
-            rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z,
-            rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
-            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
+            rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
+            rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
+            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
+            rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
+            rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
+            rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
+            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
+            rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
+            rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
+            rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
+            rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
+            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+            rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
         # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
         # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        rrrrs_c_2 = -sin(rrrrs_y_2_extra)
         # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
         rrrrs_s_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
-        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
-        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
         # (rrrrs-px_1) component along the reference direction
         rrrrs_px_1 = (
         rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
@@ -5851,522 +6276,587 @@ def _run_required(m, X, V, A):
         rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
         # (rrrrs-root_1) root, with the sign of the branch
         rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = -inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
         # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
+        rrrrs_xi_1_in_axes1_z = (
         rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
             rrrrs_S_z*rrrrs_base_frame_zx
         )
         # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_in_axes1_z = rrrrs_xi_1_in_axes1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_x = rrrrs_s_2*rrrrs_x_2_in_axes1_z - rrrrs_x_2_t
         rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_x_2_in_axes1_z
         # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
         # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        rrrrs_Kd_3_t = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
         # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
         # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
         # (rrrrs-rho2_3) squared amplitude
         rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
         # (rrrrs-disc_3) discriminant
         rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
         # (rrrrs-root_3) root, with the sign of the branch
         rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
-        )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
         # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
         inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
         rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
         # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
-            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
-            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
-        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
-        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
-        # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        axis_x_rrrrs_axes4_x = (
-        axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y
-        )
-        axis_x_rrrrs_axes4_y = (
-        axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z
-        )
-        axis_x_rrrrs_axes4_z = (
-        axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
-        )
-        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
-        # (rrrrs-w_3) reciprocal vector 2
-        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
         # (rrrrs-S_dot) velocity of the connection point
-        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
-        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
-        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_x - omega_x*rrrrs_q_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_y - omega_y*rrrrs_q_x
         rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
-        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
-        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
-        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
+        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_s_3 + rrrrs_c_3*rrrrs_s_2
+        rrrrs_v_1_t_2 = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_3 = rrrrs_s_2*rrrrs_xi_1_in_axes1_z - rrrrs_x_2_t
+        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_xi_1_in_axes1_z
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
+            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
+            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        )
+        # (rrrrs-w_1) reciprocal vector 1
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        rrrrs_w_1_x = axis_z_rrrrs_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_s_1*rrrrs_w_3_t_3
+        rrrrs_w_3_t_6 = rrrrs_c_1*rrrrs_w_3_t_3
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_base_frame_xx*rrrrs_w_3_t_4 + rrrrs_base_frame_xz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_xy*rrrrs_w_3_t_5
+        )
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_base_frame_yx*rrrrs_w_3_t_4 + rrrrs_base_frame_yz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_yy*rrrrs_w_3_t_5
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_base_frame_zx*rrrrs_w_3_t_4 + rrrrs_base_frame_zz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_zy*rrrrs_w_3_t_5
+        )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = rrrrs_r_2_in_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
-        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_y = (
-        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_y*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_z = (
-        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_z*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_in_axes4_y)
         )
-        # (rrrrs-qd_4) rate of joint 4
+        # (rrrrs-qd_1) rate of joint 1
+        rrrrs_qd_1 = (
+        rrrrs_w_1_in_axes4_z*(axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
+        )
+        # (rrrrs-qd_3) rate of joint 3
         rrrrs_qd_3 = (
-        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
+        # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
-        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
-        )
-        rrrrs_qd_1 = (
-        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
+        rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
-        # (rrrrs-omega_2) angular velocity of link 2
-        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
-        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
-        # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
-        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
-        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
-        # (rrrrs-omega_4) angular velocity of link 4
-        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
-        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        rrrrs_zeta_4_y = rrrrs_omega_3_r0_x*rrrrs_qd_4
-        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
-        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
-        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_x = rrrrs_omega_2_r0_y*rrrrs_qd_3
-        rrrrs_zeta_3_y = rrrrs_omega_2_r0_x*rrrrs_qd_3
-        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrrs_beta_3_x = -rrrrs_zeta_3_x - rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_s_3*rrrrs_zeta_2_y
-        rrrrs_beta_3_y = rrrrs_zeta_3_y + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
-        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
-        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
-        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_zeta_4_y
+        rrrrs_omega_1_in_axes2_x = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_in_axes2_y = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
+        rrrrs_omega_1_t_2 = (
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
+        )
+        rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
+        rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
+        # (rrrrs-W_1) centripetal tensor of link 1
+        rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x
+        rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y
+        rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y
         # (rrrrs-W_2) centripetal tensor of link 2
-        rrrrs_W_2_t = rrrrs_omega_1_t*rrrrs_omega_1_t
-        rrrrs_W_2_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
-        rrrrs_W_2_t_3 = rrrrs_yd_2*rrrrs_yd_2
-        rrrrs_W_2_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y
+        # (rrrrs-omega_3) angular velocity of link 3
+        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
         # (rrrrs-W_3) centripetal tensor of link 3
-        rrrrs_W_3_t = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_x
-        rrrrs_W_3_t_2 = rrrrs_omega_2_r0_y*rrrrs_omega_2_r0_y
-        rrrrs_W_3_t_3 = rrrrs_omega_3_z*rrrrs_omega_3_z
-        rrrrs_W_3_xy = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_y
-        rrrrs_W_3_xz = rrrrs_omega_2_r0_x*rrrrs_omega_3_z
-        rrrrs_W_3_yz = rrrrs_omega_2_r0_y*rrrrs_omega_3_z
+        rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z
+        rrrrs_W_3_in_axes3_yz = rrrrs_omega_1_t_2*rrrrs_omega_3_in_axes3_z
+        # (rrrrs-omega_4) angular velocity of link 4
+        rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4
         # (rrrrs-W_4) centripetal tensor of link 4
-        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
-        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
-        rrrrs_W_4_t_3 = rrrrs_omega_4_z*rrrrs_omega_4_z
-        rrrrs_W_4_xx = rrrrs_W_4_t_2 + rrrrs_W_4_t_3
-        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
-        rrrrs_W_4_xz = rrrrs_omega_3_r0_x*rrrrs_omega_4_z
-        rrrrs_W_4_yz = rrrrs_omega_3_r0_y*rrrrs_omega_4_z
-        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
-        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
-        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
-        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
-        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
-        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
-        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
-        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
-        rrrrs_bias_x = (
-        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
-            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_W_4_xx*rrrrs_platform_joint_offset_x -
-            rrrrs_bias_t_3*(rrrrs_W_3_t_3 + rrrrs_W_4_t_2) - rrrrs_d_3_r1_x*(rrrrs_W_2_t_3 +
-            rrrrs_W_4_t_2)
-        )
-        rrrrs_bias_y = (
-        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
-            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
-            rrrrs_bias_t_4*(rrrrs_W_3_t_3 + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t_3 +
-            rrrrs_W_4_t)
-        )
-        rrrrs_bias_z = (
-        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
-            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
-            rrrrs_beta_3_y*rrrrs_s_4) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_xz -
-            rrrrs_beta_4_y) + 2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
-            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
-        )
-        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
-        rrrrs_a_o_3_o_t = rrrrs_joint3_offset_x*(rrrrs_W_2_t_2 + rrrrs_W_2_t_3)
-        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rrrrs_g_r1_x = rrrrs_g_r0_y*rrrrs_s_1 - rrrrs_c_1*rrrrs_g_r0_x
-        rrrrs_g_r1_y = -rrrrs_c_1*rrrrs_g_r0_y - rrrrs_g_r0_x*rrrrs_s_1
-        rrrrs_g_r3_x = rrrrs_g_r0_z*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_g_r1_y
-        rrrrs_g_r3_y = -rrrrs_c_2_t*rrrrs_g_r0_z - rrrrs_g_r1_y*rrrrs_s_2
-        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
-        rrrrs_dy_2_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_r_2_r1_y
-        # (rrrrs-w_1) reciprocal vector 1
-        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
-        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrrs_H_a_1_x = rrrrs_q_in_base_y*rrrrs_w_1_t_5 - rrrrs_q_in_base_z*rrrrs_w_1_t_4
-        rrrrs_H_a_1_y = rrrrs_q_in_base_z*rrrrs_w_1_t_3 - rrrrs_q_in_base_x*rrrrs_w_1_t_5
-        rrrrs_H_a_1_z = rrrrs_q_in_base_x*rrrrs_w_1_t_4 - rrrrs_q_in_base_y*rrrrs_w_1_t_3
-        # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_r0_y
-        rrrrs_w_3_t_2 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_r0_y
-        rrrrs_w_3_t_3 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_r0_y
-        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
-        rrrrs_H_a_3_x = rrrrs_q_in_base_z*rrrrs_w_3_t_2 - rrrrs_q_in_base_y*rrrrs_w_3_t_3
-        rrrrs_H_a_3_y = rrrrs_q_in_base_x*rrrrs_w_3_t_3 - rrrrs_q_in_base_z*rrrrs_w_3_t
-        rrrrs_H_a_3_z = rrrrs_q_in_base_y*rrrrs_w_3_t - rrrrs_q_in_base_x*rrrrs_w_3_t_2
+        rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t
+        rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z
         # (rrrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_in_base_z - alpha_z*rrrrs_q_in_base_y
-        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_in_base_x - alpha_x*rrrrs_q_in_base_z
-        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_in_base_y - alpha_y*rrrrs_q_in_base_x
+        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_z - alpha_z*rrrrs_q_y
+        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_x - alpha_x*rrrrs_q_z
+        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_y - alpha_y*rrrrs_q_x
         # (rrrrs-S_ddot) acceleration of the connection point
         rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
         rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
         rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
-        rrrrs_S_ddot_tip_x = (
+        rrrrs_S_ddot_in_axes4_x = (
         axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
             axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
-        rrrrs_S_ddot_tip_y = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
-            + axis_y_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z
+        rrrrs_S_ddot_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_y_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
-        rrrrs_S_ddot_tip_z = (
-        axis_z_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
-            + axis_z_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z
+        rrrrs_S_ddot_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_z_rrrrs_axes4_z*rrrrs_S_ddot_z
+        )
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
+        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_in_axes3_x = (
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_s_3
+        )
+        rrrrs_beta_3_in_axes3_y = (
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
+        )
+        rrrrs_beta_3_in_axes4_y = (
+        rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
+        )
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_in_axes2_x = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_d_2_in_axes2_y = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
+        rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
+        rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
+        rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_bias_in_axes4_x = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
+            rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_y = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
+            - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
+            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_z = (
+        rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
+            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
+            2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
         # (rrrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrrs_rel_x = rrrrs_S_ddot_tip_x + rrrrs_r_2_r1_y*rrrrs_ydd_2 - rrrrs_bias_x
-        rrrrs_rel_y = rrrrs_S_ddot_tip_y - rrrrs_bias_y - rrrrs_r_2_r1_x*rrrrs_ydd_2
-        rrrrs_rel_z = rrrrs_S_ddot_tip_z - rrrrs_bias_z
+        rrrrs_rel_in_axes4_x = (
+        rrrrs_S_ddot_in_axes4_x + rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x
+        )
+        rrrrs_rel_in_axes4_y = (
+        rrrrs_S_ddot_in_axes4_y - rrrrs_bias_in_axes4_y - rrrrs_r_2_in_axes4_x*rrrrs_ydd_2
+        )
+        rrrrs_rel_in_axes4_z = rrrrs_S_ddot_in_axes4_z - rrrrs_bias_in_axes4_z
         # (rrrrs-qdd_1) acceleration of joint 1
-        rrrrs_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_rel_x
-        rrrrs_qdd_1 = inv_rrrrs_v_1_z*rrrrs_rel_z
-        # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
-        rrrrs_acc_4_x = (
-        rrrrs_S_ddot_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
-            axis_x_rrrrs_axes4_z*gravity_z
-        )
-        rrrrs_acc_4_y = (
-        rrrrs_S_ddot_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
-            axis_y_rrrrs_axes4_in_base_y*gravity_y - axis_y_rrrrs_axes4_in_base_z*gravity_z
-        )
-        rrrrs_acc_4_z = (
-        rrrrs_S_ddot_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
-            axis_z_rrrrs_axes4_in_base_y*gravity_y - axis_z_rrrrs_axes4_in_base_z*gravity_z
-        )
+        rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
+        # (rrrrs-qdd_3) acceleration of joint 3
+        rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*rrrrs_w_3_in_axes4_x
         # (rrrrs-alpha_1) angular acceleration of link 1
-        rrrrs_alpha_1_t = rrrrs_qdd_1*rrrrs_s_2
-        rrrrs_alpha_1_t_2 = rrrrs_c_2_t*rrrrs_qdd_1
+        rrrrs_alpha_1_in_axes2_x = rrrrs_qdd_1*rrrrs_s_2
+        rrrrs_alpha_1_in_axes2_y = rrrrs_c_2*rrrrs_qdd_1
         # (rrrrs-alpha_2) angular acceleration of link 2
-        rrrrs_alpha_2_x = rrrrs_alpha_1_t - rrrrs_zeta_2_x
-        rrrrs_alpha_2_y = -rrrrs_alpha_1_t_2 - rrrrs_zeta_2_y
+        rrrrs_alpha_2_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_in_axes2_x
+        rrrrs_alpha_2_in_axes2_y = rrrrs_alpha_1_in_axes2_y - rrrrs_W_2_in_axes2_xz
+        # (rrrrs-B_2) acceleration tensor of link 2
+        rrrrs_B_2_in_axes2_xy = rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2
+        rrrrs_B_2_in_axes2_yx = rrrrs_W_2_in_axes2_xy + rrrrs_ydd_2
+        rrrrs_B_2_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_in_axes2_y
+        rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
-        rrrrs_alpha_3_x = rrrrs_alpha_2_x*rrrrs_c_3 + rrrrs_alpha_2_y*rrrrs_s_3 - rrrrs_zeta_3_x
-        rrrrs_alpha_3_y = rrrrs_zeta_3_y + rrrrs_alpha_2_y*rrrrs_c_3 - rrrrs_alpha_2_x*rrrrs_s_3
-        rrrrs_alpha_3_z = rrrrs_ydd_2 - rrrrs_qdd_3
-        # (rrrrs-alpha_4) angular acceleration of link 4
-        rrrrs_alpha_4_x = (
-        rrrrs_alpha_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_qd_4 - rrrrs_alpha_3_y*rrrrs_s_4
+        rrrrs_alpha_3_in_axes3_x = (
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_c_3 +
+            rrrrs_alpha_2_in_axes2_y*rrrrs_s_3
         )
-        rrrrs_alpha_4_y = rrrrs_alpha_3_x*rrrrs_s_4 + rrrrs_alpha_3_y*rrrrs_c_4 - rrrrs_zeta_4_y
-        rrrrs_alpha_4_z = (
-        rrrrs_alpha_3_z + inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_y +
-            rrrrs_qdd_3*rrrrs_r_3_r0_x)
+        rrrrs_alpha_3_in_axes3_y = (
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_c_3 -
+            rrrrs_alpha_2_in_axes2_x*rrrrs_s_3
+        )
+        rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2
+        # (rrrrs-B_3) acceleration tensor of link 3
+        rrrrs_B_3_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_alpha_3_in_axes3_z
+        rrrrs_B_3_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_in_axes3_y
+        rrrrs_B_3_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_alpha_3_in_axes3_z
+        rrrrs_B_3_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_in_axes3_x
+        rrrrs_B_3_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_in_axes3_y
+        rrrrs_B_3_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_in_axes3_x
+        # (rrrrs-alpha_4) angular acceleration of link 4
+        rrrrs_alpha_4_in_axes4_x = (
+        rrrrs_alpha_3_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
+            rrrrs_alpha_3_in_axes3_y*rrrrs_s_4_t
+        )
+        rrrrs_alpha_4_in_axes4_y = (
+        rrrrs_alpha_3_in_axes3_x*rrrrs_s_4_t + rrrrs_alpha_3_in_axes3_y*rrrrs_c_4 - rrrrs_zeta_4_t
+        )
+        rrrrs_alpha_4_in_axes4_z = (
+        rrrrs_alpha_3_in_axes3_z + rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y -
+            rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-B_4) acceleration tensor of link 4
-        rrrrs_B_4_xy = rrrrs_W_4_xy - rrrrs_alpha_4_z
-        rrrrs_B_4_xz = rrrrs_W_4_xz + rrrrs_alpha_4_y
-        rrrrs_B_4_yx = rrrrs_W_4_xy + rrrrs_alpha_4_z
-        rrrrs_B_4_yz = rrrrs_W_4_yz - rrrrs_alpha_4_x
-        rrrrs_B_4_zx = rrrrs_W_4_xz - rrrrs_alpha_4_y
-        rrrrs_B_4_zy = rrrrs_W_4_yz + rrrrs_alpha_4_x
-        # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
-        rrrrs_mu_4_x = (
-        rrrrs_B_4_yx*rrrrs_J_4_xz + rrrrs_B_4_zy*rrrrs_Sigma_4_yy + rrrrs_J_4_yz*(rrrrs_W_4_t_2 -
-            rrrrs_W_4_t_3) + rrrrs_acc_4_z*rrrrs_h_4_y - rrrrs_B_4_yz*rrrrs_Sigma_4_zz -
-            rrrrs_B_4_zx*rrrrs_J_4_xy - rrrrs_acc_4_y*rrrrs_h_4_z
-        )
-        rrrrs_mu_4_y = (
-        rrrrs_B_4_xz*rrrrs_Sigma_4_zz + rrrrs_B_4_zy*rrrrs_J_4_xy + rrrrs_acc_4_x*rrrrs_h_4_z -
-            rrrrs_B_4_xy*rrrrs_J_4_yz - rrrrs_B_4_zx*rrrrs_Sigma_4_xx - rrrrs_J_4_xz*(rrrrs_W_4_t
-            - rrrrs_W_4_t_3) - rrrrs_acc_4_z*rrrrs_h_4_x
-        )
-        rrrrs_mu_4_z = (
-        rrrrs_B_4_xz*rrrrs_J_4_yz + rrrrs_B_4_yx*rrrrs_Sigma_4_xx + rrrrs_J_4_xy*(rrrrs_W_4_t -
-            rrrrs_W_4_t_2) + rrrrs_acc_4_y*rrrrs_h_4_x - rrrrs_B_4_xy*rrrrs_Sigma_4_yy -
-            rrrrs_B_4_yz*rrrrs_J_4_xz - rrrrs_acc_4_x*rrrrs_h_4_y
-        )
-        # (rrrrs-B_2) acceleration tensor of link 2
-        rrrrs_B_2_xy = -rrrrs_W_2_xy - rrrrs_ydd_2
-        rrrrs_B_2_yx = rrrrs_ydd_2 - rrrrs_W_2_xy
-        rrrrs_B_2_zx = rrrrs_zeta_2_y - rrrrs_alpha_2_y
-        rrrrs_B_2_zy = rrrrs_alpha_2_x - rrrrs_zeta_2_x
+        rrrrs_B_4_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_in_axes4_z
+        rrrrs_B_4_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_in_axes4_y
+        rrrrs_B_4_in_axes4_yx = rrrrs_W_1_in_axes4_xy + rrrrs_alpha_4_in_axes4_z
+        rrrrs_B_4_in_axes4_yz = rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_in_axes4_x
+        rrrrs_B_4_in_axes4_zx = rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_in_axes4_y
+        rrrrs_B_4_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_in_axes4_x
         # (rrrrs-a_o_3) acceleration of the origin of joint 3
-        rrrrs_a_o_3_t = rrrrs_B_2_yx*rrrrs_joint3_offset_x
+        rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y
+        rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
+        rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_x = (
-        rrrrs_a_o_3_t*rrrrs_s_3 - rrrrs_a_o_3_o_t*rrrrs_c_3 - rrrrs_c_3*rrrrs_g_r3_x -
-            rrrrs_g_r3_y*rrrrs_s_3
+        rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
+        rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
+        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_y + rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_z - rrrrs_g_in_axes1_y*rrrrs_s_2
+        rrrrs_acc_3_in_axes3_x = (
+        rrrrs_a_o_3_in_axes2_x*rrrrs_c_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_s_3 -
+            rrrrs_c_3*rrrrs_g_in_axes2_x - rrrrs_g_in_axes2_y*rrrrs_s_3
         )
-        rrrrs_acc_3_y = (
-        rrrrs_a_o_3_o_t*rrrrs_s_3 + rrrrs_a_o_3_t*rrrrs_c_3 + rrrrs_g_r3_x*rrrrs_s_3 -
-            rrrrs_c_3*rrrrs_g_r3_y
+        rrrrs_acc_3_in_axes3_y = (
+        rrrrs_a_o_3_in_axes2_y*rrrrs_c_3 + rrrrs_g_in_axes2_x*rrrrs_s_3 -
+            rrrrs_a_o_3_in_axes2_x*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_in_axes2_y
         )
-        rrrrs_acc_3_z = rrrrs_B_2_zx*rrrrs_joint3_offset_x - rrrrs_g_r1_x
-        # (rrrrs-B_3) acceleration tensor of link 3
-        rrrrs_B_3_xy = rrrrs_W_3_xy - rrrrs_alpha_3_z
-        rrrrs_B_3_xz = rrrrs_W_3_xz + rrrrs_alpha_3_y
-        rrrrs_B_3_yx = rrrrs_W_3_xy + rrrrs_alpha_3_z
-        rrrrs_B_3_yz = rrrrs_W_3_yz - rrrrs_alpha_3_x
-        rrrrs_B_3_zx = rrrrs_W_3_xz - rrrrs_alpha_3_y
-        rrrrs_B_3_zy = rrrrs_W_3_yz + rrrrs_alpha_3_x
+        rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_x
+        # (rrrrs-f_3) inertia force of link 3 less its weight
+        rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_f_3_in_axes3_x = (
+        rrrrs_B_3_in_axes3_xy*rrrrs_h_3_in_spec3_y + rrrrs_B_3_in_axes3_xz*rrrrs_h_3_in_spec3_z +
+            rrrrs_acc_3_in_axes3_x*rrrrs_link3_mass - rrrrs_h_3_in_spec3_x*(rrrrs_bias_t_2 +
+            rrrrs_f_3_t_2)
+        )
+        rrrrs_f_3_in_axes3_y = (
+        rrrrs_B_3_in_axes3_yx*rrrrs_h_3_in_spec3_x + rrrrs_B_3_in_axes3_yz*rrrrs_h_3_in_spec3_z +
+            rrrrs_acc_3_in_axes3_y*rrrrs_link3_mass - rrrrs_h_3_in_spec3_y*(rrrrs_bias_t_2 +
+            rrrrs_f_3_t)
+        )
+        rrrrs_f_3_in_axes3_z = (
+        rrrrs_B_3_in_axes3_zx*rrrrs_h_3_in_spec3_x + rrrrs_B_3_in_axes3_zy*rrrrs_h_3_in_spec3_y +
+            rrrrs_acc_3_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t +
+            rrrrs_f_3_t_2)
+        )
+        # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
+        rrrrs_acc_4_in_axes4_x = (
+        rrrrs_S_ddot_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y
+            - axis_x_rrrrs_axes4_z*gravity_z
+        )
+        rrrrs_acc_4_in_axes4_y = (
+        rrrrs_S_ddot_in_axes4_y - axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y
+            - axis_y_rrrrs_axes4_z*gravity_z
+        )
+        rrrrs_acc_4_in_axes4_z = (
+        rrrrs_S_ddot_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y
+            - axis_z_rrrrs_axes4_z*gravity_z
+        )
+        # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_in_axes4_x = (
+        rrrrs_B_4_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
+            rrrrs_B_4_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy + rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2
+            - rrrrs_W_4_t) + rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_y -
+            rrrrs_B_4_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
+            rrrrs_B_4_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
+            rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_z
+        )
+        rrrrs_mu_4_in_axes4_y = (
+        rrrrs_B_4_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
+            rrrrs_B_4_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
+            rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_z -
+            rrrrs_B_4_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
+            rrrrs_B_4_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t -
+            rrrrs_W_4_t) - rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_x
+        )
+        rrrrs_mu_4_in_axes4_z = (
+        rrrrs_B_4_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
+            rrrrs_B_4_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t -
+            rrrrs_W_1_t_2) + rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
+            rrrrs_B_4_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
+            rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_y
+        )
         # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        rrrrs_mu_3_x = (
-        rrrrs_B_3_yx*rrrrs_J_3_xz + rrrrs_B_3_zy*rrrrs_Sigma_3_yy + rrrrs_J_3_yz*(rrrrs_W_3_t_2 -
-            rrrrs_W_3_t_3) + rrrrs_acc_3_z*rrrrs_h_3_y - rrrrs_B_3_yz*rrrrs_Sigma_3_zz -
-            rrrrs_B_3_zx*rrrrs_J_3_xy - rrrrs_acc_3_y*rrrrs_h_3_z
+        rrrrs_mu_3_in_axes3_x = (
+        rrrrs_B_3_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
+            rrrrs_B_3_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy + rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2
+            - rrrrs_bias_t_2) + rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_y -
+            rrrrs_B_3_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
+            rrrrs_B_3_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
+            rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_z
         )
-        rrrrs_mu_3_y = (
-        rrrrs_B_3_xz*rrrrs_Sigma_3_zz + rrrrs_B_3_zy*rrrrs_J_3_xy + rrrrs_acc_3_x*rrrrs_h_3_z -
-            rrrrs_B_3_xy*rrrrs_J_3_yz - rrrrs_B_3_zx*rrrrs_Sigma_3_xx - rrrrs_J_3_xz*(rrrrs_W_3_t
-            - rrrrs_W_3_t_3) - rrrrs_acc_3_z*rrrrs_h_3_x
+        rrrrs_mu_3_in_axes3_y = (
+        rrrrs_B_3_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
+            rrrrs_B_3_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
+            rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_z -
+            rrrrs_B_3_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
+            rrrrs_B_3_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx - rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t -
+            rrrrs_bias_t_2) - rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_x
         )
-        rrrrs_mu_3_z = (
-        rrrrs_B_3_xz*rrrrs_J_3_yz + rrrrs_B_3_yx*rrrrs_Sigma_3_xx + rrrrs_J_3_xy*(rrrrs_W_3_t -
-            rrrrs_W_3_t_2) + rrrrs_acc_3_y*rrrrs_h_3_x - rrrrs_B_3_xy*rrrrs_Sigma_3_yy -
-            rrrrs_B_3_yz*rrrrs_J_3_xz - rrrrs_acc_3_x*rrrrs_h_3_y
+        rrrrs_mu_3_in_axes3_z = (
+        rrrrs_B_3_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
+            rrrrs_B_3_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx + rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t -
+            rrrrs_f_3_t_2) + rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_x -
+            rrrrs_B_3_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
+            rrrrs_B_3_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
+            rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_y
         )
         # (rrrrs-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        rrrrs_N_3_x = rrrrs_mu_3_x + rrrrs_c_4*rrrrs_mu_4_x + rrrrs_mu_4_y*rrrrs_s_4
-        rrrrs_N_3_y = rrrrs_mu_3_y + rrrrs_c_4*rrrrs_mu_4_y - rrrrs_mu_4_x*rrrrs_s_4
-        rrrrs_N_3_z = rrrrs_mu_3_z + rrrrs_mu_4_z
-        # (rrrrs-f_3) inertia force of link 3 less its weight
-        rrrrs_f_3_x = (
-        rrrrs_B_3_xy*rrrrs_h_3_y + rrrrs_B_3_xz*rrrrs_h_3_z + rrrrs_acc_3_x*rrrrs_link3_mass -
-            rrrrs_h_3_x*(rrrrs_W_3_t_2 + rrrrs_W_3_t_3)
+        rrrrs_N_3_in_axes3_x = (
+        rrrrs_mu_3_in_axes3_x + rrrrs_c_4*rrrrs_mu_4_in_axes4_x +
+            rrrrs_mu_4_in_axes4_y*rrrrs_s_4_t
         )
-        rrrrs_f_3_y = (
-        rrrrs_B_3_yx*rrrrs_h_3_x + rrrrs_B_3_yz*rrrrs_h_3_z + rrrrs_acc_3_y*rrrrs_link3_mass -
-            rrrrs_h_3_y*(rrrrs_W_3_t + rrrrs_W_3_t_3)
+        rrrrs_N_3_in_axes3_y = (
+        rrrrs_mu_3_in_axes3_y + rrrrs_c_4*rrrrs_mu_4_in_axes4_y -
+            rrrrs_mu_4_in_axes4_x*rrrrs_s_4_t
         )
-        rrrrs_f_3_z = (
-        rrrrs_B_3_zx*rrrrs_h_3_x + rrrrs_B_3_zy*rrrrs_h_3_y + rrrrs_acc_3_z*rrrrs_link3_mass -
-            rrrrs_h_3_z*(rrrrs_W_3_t + rrrrs_W_3_t_2)
-        )
+        rrrrs_N_3_in_axes3_z = rrrrs_mu_3_in_axes3_z + rrrrs_mu_4_in_axes4_z
         # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrrrs_mu_2_x = (
-        rrrrs_B_2_yx*rrrrs_J_2_xz + rrrrs_B_2_zy*rrrrs_Sigma_2_yy + rrrrs_J_2_yz*(rrrrs_W_2_t_2 -
-            rrrrs_W_2_t_3) + rrrrs_Sigma_2_zz*rrrrs_alpha_1_t + rrrrs_g_r3_y*rrrrs_h_2_z -
-            rrrrs_B_2_zx*rrrrs_J_2_xy - rrrrs_g_r1_x*rrrrs_h_2_y
+        rrrrs_mu_2_t = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x
+        rrrrs_mu_2_in_axes2_x = (
+        rrrrs_B_2_in_axes2_yx*rrrrs_J_2_in_spec2_xz +
+            rrrrs_B_2_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t
+            - rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_x +
+            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z - rrrrs_B_2_in_axes2_zx*rrrrs_J_2_in_spec2_xy
+            - rrrrs_g_in_axes1_x*rrrrs_h_2_in_spec2_y
         )
-        rrrrs_mu_2_y = (
-        rrrrs_B_2_zy*rrrrs_J_2_xy + rrrrs_g_r1_x*rrrrs_h_2_x - rrrrs_B_2_xy*rrrrs_J_2_yz -
-            rrrrs_B_2_zx*rrrrs_Sigma_2_xx - rrrrs_J_2_xz*(rrrrs_W_2_t - rrrrs_W_2_t_3) -
-            rrrrs_Sigma_2_zz*rrrrs_alpha_1_t_2 - rrrrs_g_r3_x*rrrrs_h_2_z
+        rrrrs_mu_2_in_axes2_y = (
+        rrrrs_B_2_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_y +
+            rrrrs_g_in_axes1_x*rrrrs_h_2_in_spec2_x - rrrrs_B_2_in_axes2_xy*rrrrs_J_2_in_spec2_yz
+            - rrrrs_B_2_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
+            rrrrs_J_2_in_spec2_xz*(rrrrs_mu_2_t - rrrrs_bias_t) -
+            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z
         )
-        rrrrs_mu_2_z = (
-        rrrrs_B_2_yx*rrrrs_Sigma_2_xx + rrrrs_J_2_xy*(rrrrs_W_2_t - rrrrs_W_2_t_2) +
-            rrrrs_J_2_xz*rrrrs_alpha_1_t + rrrrs_g_r3_x*rrrrs_h_2_y -
-            rrrrs_B_2_xy*rrrrs_Sigma_2_yy - rrrrs_J_2_yz*rrrrs_alpha_1_t_2 -
-            rrrrs_g_r3_y*rrrrs_h_2_x
+        rrrrs_mu_2_in_axes2_z = (
+        rrrrs_B_2_in_axes2_yx*rrrrs_Sigma_2_in_axes2_xx + rrrrs_J_2_in_spec2_xy*(rrrrs_mu_2_t -
+            rrrrs_a_o_3_t) + rrrrs_J_2_in_spec2_xz*rrrrs_alpha_1_in_axes2_x +
+            rrrrs_J_2_in_spec2_yz*rrrrs_alpha_1_in_axes2_y +
+            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_y -
+            rrrrs_B_2_in_axes2_xy*rrrrs_Sigma_2_in_axes2_yy -
+            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_x
         )
         # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrrs_N_2_x = rrrrs_mu_2_x + rrrrs_N_3_x*rrrrs_c_3 - rrrrs_N_3_y*rrrrs_s_3
-        rrrrs_N_2_y = (
-        rrrrs_mu_2_y + rrrrs_N_3_x*rrrrs_s_3 + rrrrs_N_3_y*rrrrs_c_3 -
-            rrrrs_f_3_z*rrrrs_joint3_offset_x
+        rrrrs_N_2_in_axes2_x = (
+        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_c_3 - rrrrs_N_3_in_axes3_y*rrrrs_s_3
         )
-        rrrrs_N_2_z = (
-        rrrrs_N_3_z + rrrrs_mu_2_z + rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_y +
-            rrrrs_f_3_x*rrrrs_s_3)
+        rrrrs_N_2_in_axes2_y = (
+        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_s_3 + rrrrs_N_3_in_axes3_y*rrrrs_c_3 -
+            rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
+        )
+        rrrrs_N_2_in_axes2_z = (
+        rrrrs_N_3_in_axes3_z + rrrrs_mu_2_in_axes2_z +
+            rrrrs_joint3_offset_x*(rrrrs_c_3*rrrrs_f_3_in_axes3_y +
+            rrrrs_f_3_in_axes3_x*rrrrs_s_3)
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrrs_mu_1_z = (
-        rrrrs_J_1_xx*rrrrs_qdd_1 - rrrrs_g_r1_x*rrrrs_h_1_y - rrrrs_g_r1_y*rrrrs_h_1_z
+        rrrrs_mu_1_in_axes1_z = (
+        rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 - rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_y -
+            rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_z
         )
         # (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrrs_N_1_z = rrrrs_mu_1_z + rrrrs_N_2_x*rrrrs_s_2 - rrrrs_N_2_y*rrrrs_c_2_t
+        rrrrs_N_1_in_axes1_z = (
+        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_s_2 + rrrrs_N_2_in_axes2_y*rrrrs_c_2
+        )
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_mu_4_z
-        rrrrs_G_t_2 = inv_rrrrs_r_3_r0_y*(rrrrs_G_t*rrrrs_r_3_r0_x - rrrrs_N_3_z)
+        rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
+        rrrrs_G_in_axes4_x = (
+        -rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
+        )
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrrs_c_in_axes4_x = (
+        rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x - rrrrs_G_in_axes4_x -
+            rrrrs_B_4_in_axes4_xy*rrrrs_h_4_in_spec4_y -
+            rrrrs_B_4_in_axes4_xz*rrrrs_h_4_in_spec4_z
+        )
+        rrrrs_c_in_axes4_y = (
+        rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) - rrrrs_G_in_axes4_y -
+            rrrrs_B_4_in_axes4_yx*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_in_axes4_yz*rrrrs_h_4_in_spec4_z
+        )
+        rrrrs_c_in_axes4_z = (
+        rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
+            rrrrs_B_4_in_axes4_zx*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_in_axes4_zy*rrrrs_h_4_in_spec4_y - rrrrs_N_1_in_axes1_z*rrrrs_w_1_in_axes4_z
+        )
         rrrrs_c_x = (
-        rrrrs_W_4_xx*rrrrs_h_4_x - rrrrs_G_t_2 - rrrrs_B_4_xy*rrrrs_h_4_y -
-            rrrrs_B_4_xz*rrrrs_h_4_z
+        axis_x_rrrrs_axes4_x*rrrrs_c_in_axes4_x + axis_y_rrrrs_axes4_x*rrrrs_c_in_axes4_y +
+            axis_z_rrrrs_axes4_x*rrrrs_c_in_axes4_z
         )
         rrrrs_c_y = (
-        rrrrs_h_4_y*(rrrrs_W_4_t + rrrrs_W_4_t_3) - rrrrs_G_t - rrrrs_B_4_yx*rrrrs_h_4_x -
-            rrrrs_B_4_yz*rrrrs_h_4_z
+        axis_x_rrrrs_axes4_y*rrrrs_c_in_axes4_x + axis_y_rrrrs_axes4_y*rrrrs_c_in_axes4_y +
+            axis_z_rrrrs_axes4_y*rrrrs_c_in_axes4_z
         )
         rrrrs_c_z = (
-        rrrrs_h_4_z*(rrrrs_W_4_t + rrrrs_W_4_t_2) - inv_rrrrs_v_1_z*rrrrs_N_1_z -
-            rrrrs_B_4_zx*rrrrs_h_4_x - rrrrs_B_4_zy*rrrrs_h_4_y
+        axis_x_rrrrs_axes4_z*rrrrs_c_in_axes4_x + axis_y_rrrrs_axes4_z*rrrrs_c_in_axes4_y +
+            axis_z_rrrrs_axes4_z*rrrrs_c_in_axes4_z
         )
-        rrrrs_c_in_base_x = (
-        axis_x_rrrrs_axes4_x*rrrrs_c_x + axis_y_rrrrs_axes4_in_base_x*rrrrs_c_y +
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_c_z
-        )
-        rrrrs_c_in_base_y = (
-        axis_x_rrrrs_axes4_y*rrrrs_c_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_c_y +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_c_z
-        )
-        rrrrs_c_in_base_z = (
-        axis_x_rrrrs_axes4_z*rrrrs_c_x + axis_y_rrrrs_axes4_in_base_z*rrrrs_c_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_c_z
-        )
-        # (R_a) moment that actuators and external wrench must give
-        rrrrs_R_a_t = rrrrs_c_in_base_z*rrrrs_q_in_base_y - rrrrs_c_in_base_y*rrrrs_q_in_base_z
-        rrrrs_R_a_t_2 = rrrrs_c_in_base_x*rrrrs_q_in_base_z - rrrrs_c_in_base_z*rrrrs_q_in_base_x
-        rrrrs_R_a_t_3 = rrrrs_c_in_base_y*rrrrs_q_in_base_x - rrrrs_c_in_base_x*rrrrs_q_in_base_y
         # (rrrrs-P_2) inertia and weight of the leg along the extra freedom of joint 2
-        rrrrs_P_2_t = rrrrs_G_t_2*rrrrs_r_2_r1_y - rrrrs_G_t*rrrrs_r_2_r1_x
-        rrrrs_P_2 = rrrrs_N_2_z + rrrrs_P_2_t
+        rrrrs_P_2_t = (
+        rrrrs_G_in_axes4_x*rrrrs_r_2_in_axes4_y - rrrrs_G_in_axes4_y*rrrrs_r_2_in_axes4_x
+        )
+        rrrrs_P_2 = rrrrs_N_2_in_axes2_z + rrrrs_P_2_t
+        # (R_a) moment that actuators and external wrench must give
+        rrrrs_R_a_t = rrrrs_c_y*rrrrs_q_z - rrrrs_c_z*rrrrs_q_y
+        rrrrs_R_a_t_2 = rrrrs_c_z*rrrrs_q_x - rrrrs_c_x*rrrrs_q_z
+        rrrrs_R_a_t_3 = rrrrs_c_x*rrrrs_q_y - rrrrs_c_y*rrrrs_q_x
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrrs_H_a_1_x = rrrrs_q_y*rrrrs_w_1_z - rrrrs_q_z*rrrrs_w_1_y
+        rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
+        rrrrs_H_a_1_z = rrrrs_q_x*rrrrs_w_1_y - rrrrs_q_y*rrrrs_w_1_x
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
+        rrrrs_H_a_3_x = rrrrs_q_y*rrrrs_w_3_z - rrrrs_q_z*rrrrs_w_3_y
+        rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
+        rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         ok = (
         ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
-            rrrrs_size))
+            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrrs_c_in_base_x, rrrrs_c_in_base_y, rrrrs_c_in_base_z, rrrrs_R_a_t, rrrrs_R_a_t_2,
-            rrrrs_R_a_t_3,
+        rrrrs_c_x, rrrrs_c_y, rrrrs_c_z, rrrrs_R_a_t, rrrrs_R_a_t_2, rrrrs_R_a_t_3,
         ))
+        # (rrrrs-P_2) inertia and weight of the leg along the extra freedom of joint 2
         out_required[_required_rrrrs[0][leg]] = rrrrs_P_2
-        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_t_3
-        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_t_4
-        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        # (rrrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
+        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_y
+        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_z
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[3][leg]] = rrrrs_H_a_1_x
         out_H[_H_rrrrs[4][leg]] = rrrrs_H_a_1_y
         out_H[_H_rrrrs[5][leg]] = rrrrs_H_a_1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_rrrrs[6][leg]] = 1.0
-        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t
-        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_2
-        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_3
+        # (rrrrs-w_3) reciprocal vector 2
+        out_H[_H_rrrrs[7][leg]] = rrrrs_w_3_x
+        out_H[_H_rrrrs[8][leg]] = rrrrs_w_3_y
+        out_H[_H_rrrrs[9][leg]] = rrrrs_w_3_z
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
         out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
-        out_H[_H_rrrrs[13][leg]] = -rrrrs_dy_2_qdd_3
-    (
-    total_rrrrs_x, total_rrrrs_y, total_rrrrs_z, total_rrrrs_x_2, total_rrrrs_y_2,
-        total_rrrrs_z_2,
-    ) = sums
+        # (rrrrs-w_3) reciprocal vector 2
+        out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
+    R_t_t, R_t_t_2, R_t_t_3, R_a_rrrrs_x, R_a_rrrrs_y, R_a_rrrrs_z = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
-            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+            rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_mu_2_t, rrrs_mu_2_t_2, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -6379,365 +6869,393 @@ def _run_required(m, X, V, A):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
-        # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
-        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
-        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
-        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
-        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
-        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
-        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
-        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
-        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
-        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
-        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
-        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
-        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
-        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
-        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
-        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
-        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
-        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
-        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
-        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
+        rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
         rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
-        rrrs_S_ddot_tip_x = (
+        rrrs_S_ddot_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
             axis_x_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        rrrs_S_ddot_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
+        rrrs_S_ddot_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        rrrs_S_ddot_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
+        rrrs_S_ddot_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_ddot_z
+        )
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x
-        rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y
-        rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z
+        rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z
         # (rrrs-qdd_1) acceleration of joint 1
-        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
-        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
-        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_x = (
-        rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
-            axis_x_rrrs_axes3_z*gravity_z
-        )
-        rrrs_acc_3_y = (
-        rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
-        )
-        rrrs_acc_3_z = (
-        rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
-        )
+        rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2) acceleration of joint 2
+        rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
-        rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1
         # (rrrs-alpha_2) angular acceleration of link 2
-        rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t
-        rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y
+        rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t
+        rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz
+        # (rrrs-B_2) acceleration tensor of link 2
+        rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2
+        rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2
+        rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y
+        rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
-        rrrs_alpha_3_x = (
-        rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_y*rrrs_s_3
+        rrrs_alpha_3_in_axes3_x = (
+        rrrs_alpha_2_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+            rrrs_alpha_2_in_axes2_y*rrrs_s_3_t
         )
-        rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 - rrrs_zeta_3_y
-        rrrs_alpha_3_z = (
-        inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2
+        rrrs_alpha_3_in_axes3_y = (
+        rrrs_alpha_2_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
+        )
+        rrrs_alpha_3_in_axes3_z = (
+        rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-B_3) acceleration tensor of link 3
-        rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z
-        rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y
-        rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z
-        rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x
-        rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y
-        rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x
+        rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z
+        rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y
+        rrrs_B_3_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z
+        rrrs_B_3_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x
+        rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y
+        rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_in_axes3_x = (
+        rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_in_axes3_y = (
+        rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+            axis_y_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_in_axes3_z = (
+        rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+            axis_z_rrrs_axes3_z*gravity_z
+        )
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_x = (
-        rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
-            rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y - rrrs_B_3_yz*rrrs_Sigma_3_zz -
-            rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z
+        rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_in_axes3_x = (
+        rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz + rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy
+            + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+            rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z
         )
-        rrrs_mu_3_y = (
-        rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy + rrrs_acc_3_x*rrrs_h_3_z -
-            rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
-            rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x
+        rrrs_mu_3_in_axes3_y = (
+        rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz + rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy
+            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
+            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
         )
-        rrrs_mu_3_z = (
-        rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
-            rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x - rrrs_B_3_xy*rrrs_Sigma_3_yy -
-            rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y
+        rrrs_mu_3_in_axes3_z = (
+        rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz + rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx
+            + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+            rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-B_2) acceleration tensor of link 2
-        rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2
-        rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2
-        rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y
-        rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_x = (
-        rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
-            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_zx*rrrs_J_2_xy -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y
+        rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_mu_2_in_axes2_x = (
+        rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
+            + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
         )
-        rrrs_mu_2_y = (
-        rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_xy*rrrs_J_2_yz -
-            rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        rrrs_mu_2_in_axes2_y = (
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
-        rrrs_mu_2_z = (
-        rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
-            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_t -
-            rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        rrrs_mu_2_in_axes2_z = (
+        rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
+            - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3
-        rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3
-        rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z
+        rrrs_N_2_in_axes2_x = (
+        rrrs_mu_2_in_axes2_x + rrrs_c_3*rrrs_mu_3_in_axes3_x + rrrs_mu_3_in_axes3_y*rrrs_s_3_t
+        )
+        rrrs_N_2_in_axes2_y = (
+        rrrs_mu_2_in_axes2_y + rrrs_c_3*rrrs_mu_3_in_axes3_y - rrrs_mu_3_in_axes3_x*rrrs_s_3_t
+        )
+        rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        rrrs_mu_1_in_axes1_z = (
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        )
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2
+        rrrs_N_1_in_axes1_z = (
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
+        )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z
+        rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
+        rrrs_c_in_axes3_x = (
+        rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
+            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
+        )
+        rrrs_c_in_axes3_y = (
+        rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) - rrrs_G_in_axes3_y -
+            rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
+        )
+        rrrs_c_in_axes3_z = (
+        rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
+            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
+            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
+        )
         rrrs_c_x = (
-        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x -
-            rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y - rrrs_B_3_xz*rrrs_h_3_z
+        axis_x_rrrs_axes3_x*rrrs_c_in_axes3_x + axis_y_rrrs_axes3_x*rrrs_c_in_axes3_y +
+            axis_z_rrrs_axes3_x*rrrs_c_in_axes3_z
         )
         rrrs_c_y = (
-        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t - rrrs_B_3_yx*rrrs_h_3_x -
-            rrrs_B_3_yz*rrrs_h_3_z
+        axis_x_rrrs_axes3_y*rrrs_c_in_axes3_x + axis_y_rrrs_axes3_y*rrrs_c_in_axes3_y +
+            axis_z_rrrs_axes3_y*rrrs_c_in_axes3_z
         )
         rrrs_c_z = (
-        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
-            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y
-        )
-        rrrs_c_in_base_x = (
-        axis_x_rrrs_axes3_x*rrrs_c_x + axis_y_rrrs_axes3_in_base_x*rrrs_c_y +
-            axis_z_rrrs_axes3_in_base_x*rrrs_c_z
-        )
-        rrrs_c_in_base_y = (
-        axis_x_rrrs_axes3_y*rrrs_c_x + axis_y_rrrs_axes3_in_base_y*rrrs_c_y +
-            axis_z_rrrs_axes3_in_base_y*rrrs_c_z
-        )
-        rrrs_c_in_base_z = (
-        axis_x_rrrs_axes3_z*rrrs_c_x + axis_y_rrrs_axes3_in_base_z*rrrs_c_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_c_z
+        axis_x_rrrs_axes3_z*rrrs_c_in_axes3_x + axis_y_rrrs_axes3_z*rrrs_c_in_axes3_y +
+            axis_z_rrrs_axes3_z*rrrs_c_in_axes3_z
         )
         # (R_a) moment that actuators and external wrench must give
-        rrrs_R_a_t = rrrs_c_in_base_z*rrrs_q_in_base_y - rrrs_c_in_base_y*rrrs_q_in_base_z
-        rrrs_R_a_t_2 = rrrs_c_in_base_x*rrrs_q_in_base_z - rrrs_c_in_base_z*rrrs_q_in_base_x
-        rrrs_R_a_t_3 = rrrs_c_in_base_y*rrrs_q_in_base_x - rrrs_c_in_base_x*rrrs_q_in_base_y
+        rrrs_R_a_t = rrrs_c_y*rrrs_q_z - rrrs_c_z*rrrs_q_y
+        rrrs_R_a_t_2 = rrrs_c_z*rrrs_q_x - rrrs_c_x*rrrs_q_z
+        rrrs_R_a_t_3 = rrrs_c_x*rrrs_q_y - rrrs_c_y*rrrs_q_x
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
+        rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
+        rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
+        rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
+        rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y
+        rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
+        rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         sums = m.added(sums, leg, (
-        rrrs_c_in_base_x, rrrs_c_in_base_y, rrrs_c_in_base_z, rrrs_R_a_t, rrrs_R_a_t_2,
-            rrrs_R_a_t_3,
+        rrrs_c_x, rrrs_c_y, rrrs_c_z, rrrs_R_a_t, rrrs_R_a_t_2, rrrs_R_a_t_3,
         ))
-        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        # (rrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
         out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
         out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
-        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        out_H[_H_rrrs[6][leg]] = rrrs_w_2_x
+        out_H[_H_rrrs[7][leg]] = rrrs_w_2_y
+        out_H[_H_rrrs[8][leg]] = rrrs_w_2_z
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
-    (
-    total_rrrs_x, total_rrrs_y, total_rrrs_z, total_rrrs_x_2, total_rrrs_y_2, total_rrrs_z_2,
-    ) = sums
+    R_t_t_4, R_t_t_5, R_t_t_6, R_a_rrrs_x, R_a_rrrs_y, R_a_rrrs_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rrrrs_x - total_rrrs_x
-    R_t_y = f_p_y - total_rrrrs_y - total_rrrs_y
-    R_t_z = f_p_z - total_rrrrs_z - total_rrrs_z
+    R_t_x = f_p_x - R_t_t - R_t_t_4
+    R_t_y = f_p_y - R_t_t_2 - R_t_t_5
+    R_t_z = f_p_z - R_t_t_3 - R_t_t_6
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_rrrrs_x_2 - total_rrrs_x_2
-    R_a_y = mu_p_in_base_y - total_rrrrs_y_2 - total_rrrs_y_2
-    R_a_z = mu_p_in_base_z - total_rrrrs_z_2 - total_rrrs_z_2
+    R_a_x = R_a_rrrrs_x + R_a_rrrs_x + mu_p_x
+    R_a_y = R_a_rrrrs_y + R_a_rrrs_y + mu_p_y
+    R_a_z = R_a_rrrrs_z + R_a_rrrs_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -6790,11 +7308,11 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+            rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size_t_3,
         ) = k
@@ -6813,7 +7331,7 @@ def _run_inverse_kinematics(m, X):
             R_zz*rrrrs_platform_point_z - rrrrs_base_point_z
         )
         # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        rrrrs_c_2 = -sin(rrrrs_y_2_extra)
         # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
         rrrrs_s_2 = cos(rrrrs_y_2_extra)
         # (rrrrs-px_1) component along the reference direction
@@ -6830,57 +7348,65 @@ def _run_inverse_kinematics(m, X):
         rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
         # (rrrrs-root_1) root, with the sign of the branch
         rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-q_1) displacement of joint 1
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_q_1 = (
+        atan2(inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1, inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1)
+        )
         # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
+        rrrrs_xi_1_in_axes1_z = (
         rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
             rrrrs_S_z*rrrrs_base_frame_zx
         )
         # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_r1_y = rrrrs_root_1*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        rrrrs_x_2_in_axes1_z = rrrrs_xi_1_in_axes1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_in_axes2_y = rrrrs_c_2*rrrrs_x_2_in_axes1_z + rrrrs_root_1*rrrrs_s_2
         # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_c_2_t*rrrrs_root_1 + rrrrs_s_2*rrrrs_x_2_z - rrrrs_joint3_offset_x
+        rrrrs_x_3_in_axes2_x = (
+        rrrrs_s_2*rrrrs_x_2_in_axes1_z - rrrrs_joint3_offset_x - rrrrs_c_2*rrrrs_root_1
+        )
         # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        rrrrs_Kd_3_t = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
         # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
         # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
         # (rrrrs-rho2_3) squared amplitude
         rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
         # (rrrrs-disc_3) discriminant
         rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
         # (rrrrs-root_3) root, with the sign of the branch
         rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        # (rrrrs-q_1) displacement of joint 1
-        rrrrs_q_1 = (
-        atan2(inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1, inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1)
-        )
         # (rrrrs-q_3) displacement of joint 3
+        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
         rrrrs_q_3 = (
         atan2(inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3),
             inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3))
         )
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        )
         # (rrrrs-q_4) displacement of joint 4
         rrrrs_q_4 = (
-        atan2(-inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3,
-            inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x)
+        atan2(-inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3,
+            inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x)
         )
         ok = (
         ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >=
             0.0))
         )
+        # (rrrrs-q_1) displacement of joint 1
         out_q[_q_rrrrs[0][leg]] = rrrrs_q_1
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_q[_q_rrrrs[1][leg]] = rrrrs_y_2_extra
+        # (rrrrs-q_3) displacement of joint 3
         out_q[_q_rrrrs[2][leg]] = rrrrs_q_3
+        # (rrrrs-q_4) displacement of joint 4
         out_q[_q_rrrrs[3][leg]] = rrrrs_q_4
     for leg, k in legs[1]:
         (
@@ -6917,51 +7443,54 @@ def _run_inverse_kinematics(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-q_1) displacement of joint 1
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_q_1 = (
+        atan2(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1, inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1)
+        )
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
-        # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        # (rrrs-q_1) displacement of joint 1
-        rrrs_q_1 = (
-        atan2(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1, inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1)
-        )
         # (rrrs-q_2) displacement of joint 2
+        rrrs_q_2_t = -1.0/rrrs_rho2_2
         rrrs_q_2 = (
-        atan2(inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2),
-            -inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2))
+        atan2(-rrrs_q_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2),
+            rrrs_q_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2))
+        )
+        # (rrrs-x_3) from the origin of joint 3 to the connection point
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
         )
         # (rrrs-q_3) displacement of joint 3
         rrrs_q_3 = (
         atan2(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2,
-            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x)
+            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x)
         )
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
         )
+        # (rrrs-q_1) displacement of joint 1
         out_q[_q_rrrs[0][leg]] = rrrs_q_1
+        # (rrrs-q_2) displacement of joint 2
         out_q[_q_rrrs[1][leg]] = rrrs_q_2
+        # (rrrs-q_3) displacement of joint 3
         out_q[_q_rrrs[2][leg]] = rrrs_q_3
     return ok, (out_q,)
 
@@ -7024,32 +7553,32 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t,
-            rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_joint2_offset_x,
-            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
-            rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-            rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+            rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+            rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
         # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        rrrrs_c_2 = -sin(rrrrs_y_2_extra)
         # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
         rrrrs_s_2 = cos(rrrrs_y_2_extra)
         # (rrrrs-px_1) component along the reference direction
@@ -7066,184 +7595,175 @@ def _run_joint_rates(m, X, V):
         rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
         # (rrrrs-root_1) root, with the sign of the branch
         rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = -inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
         # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
+        rrrrs_xi_1_in_axes1_z = (
         rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
             rrrrs_S_z*rrrrs_base_frame_zx
         )
         # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_in_axes1_z = rrrrs_xi_1_in_axes1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_x = rrrrs_s_2*rrrrs_x_2_in_axes1_z - rrrrs_x_2_t
         rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_x_2_in_axes1_z
         # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
         # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        rrrrs_Kd_3_t = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
         # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
         # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
         # (rrrrs-rho2_3) squared amplitude
         rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
         # (rrrrs-disc_3) discriminant
         rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
         # (rrrrs-root_3) root, with the sign of the branch
         rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
-        )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
         # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
         inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
         rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
         # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
-            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
-            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
-        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
-        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
-        # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        axis_x_rrrrs_axes4_x = (
-        axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y
-        )
-        axis_x_rrrrs_axes4_y = (
-        axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z
-        )
-        axis_x_rrrrs_axes4_z = (
-        axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-S_dot) velocity of the connection point
-        rrrrs_S_dot_x = t_dot_x + omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
-        rrrrs_S_dot_y = t_dot_y + omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
-        rrrrs_S_dot_z = t_dot_z + omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_x = t_dot_x + omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
+        rrrrs_S_dot_y = t_dot_y + omega_z*rrrrs_q_x - omega_x*rrrrs_q_z
+        rrrrs_S_dot_z = t_dot_z + omega_x*rrrrs_q_y - omega_y*rrrrs_q_x
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
-        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
-        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
-        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
+        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_s_3 + rrrrs_c_3*rrrrs_s_2
+        rrrrs_v_1_t_2 = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_3 = rrrrs_s_2*rrrrs_xi_1_in_axes1_z - rrrrs_x_2_t
+        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_xi_1_in_axes1_z
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
+            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
+            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        )
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_S_dot_rest_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_S_dot_rest_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_S_dot_rest_t_3 = rrrrs_S_dot_rest_t*rrrrs_c_2 - rrrrs_S_dot_rest_t_2*rrrrs_s_2
+        rrrrs_S_dot_rest_t_4 = rrrrs_S_dot_rest_t*rrrrs_s_2 + rrrrs_S_dot_rest_t_2*rrrrs_c_2
+        rrrrs_S_dot_rest_t_5 = rrrrs_S_dot_rest_t_3*rrrrs_s_1
+        rrrrs_S_dot_rest_t_6 = rrrrs_S_dot_rest_t_3*rrrrs_c_1
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_xx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy
+        )
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_yx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_zx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy
+        )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
         rrrrs_S_dot_rest_x = (
-        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_y = (
-        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_y*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_z = (
-        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_z*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_in_axes4_y)
+        )
+        # (rrrrs-qd_1) rate of joint 1
+        rrrrs_qd_1 = (
+        (axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x + axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+            axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/rrrrs_v_1_in_axes4_z
+        )
+        # (rrrrs-qd_3) rate of joint 3
+        rrrrs_qd_3 = (
+        -(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x + axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
+            axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/rrrrs_r_3_in_axes4_y
         )
         # (rrrrs-qd_4) rate of joint 4
-        rrrrs_qd_3 = (
-        (axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x + axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y +
-            axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)/rrrrs_r_3_r0_y
-        )
         rrrrs_qd_4 = (
-        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*(rrrrs_c_4*rrrrs_r_3_x +
-            rrrrs_r_3_t*rrrrs_s_4))
-        )
-        rrrrs_qd_1 = (
-        (axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)/rrrrs_v_1_z
+        rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+            rrrrs_qd_3*(rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t))
         )
         ok = (
         ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
-            rrrrs_size))
+            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size))
         )
+        # (rrrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrrs[0][leg]] = rrrrs_qd_1
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qd[_qd_rrrrs[1][leg]] = rrrrs_yd_2
-        out_qd[_qd_rrrrs[2][leg]] = -rrrrs_qd_3
+        # (rrrrs-qd_3) rate of joint 3
+        out_qd[_qd_rrrrs[2][leg]] = rrrrs_qd_3
+        # (rrrrs-qd_4) rate of joint 4
         out_qd[_qd_rrrrs[3][leg]] = rrrrs_qd_4
     for leg, k in legs[1]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
-            rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-            rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -7256,107 +7776,110 @@ def _run_joint_rates(m, X, V):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
-        # (rrrs-qd_3) rate of joint 3
-        rrrs_qd_2 = (
-        (rrrs_S_dot_x*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y) +
-            rrrs_S_dot_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z) +
-            rrrs_S_dot_z*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x))/rrrs_r_2_r0_y
+        rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_y - omega_y*rrrs_q_x
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
-        rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*(rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3))
-        )
+        # (rrrs-qd_1) rate of joint 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
         rrrs_qd_1 = (
-        (axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)/rrrs_v_1_z
+        (axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)/rrrs_v_1_in_axes3_z
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        )
+        rrrs_qd_2 = (
+        -(rrrs_S_dot_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y) +
+            rrrs_S_dot_y*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z) +
+            rrrs_S_dot_z*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x))/rrrs_r_2_in_axes3_y
+        )
+        # (rrrs-qd_3) rate of joint 3
+        rrrs_qd_3 = (
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*(rrrs_c_3*rrrs_r_2_in_axes2_x +
+            rrrs_r_2_t*rrrs_s_3_t))
         )
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
+        # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
-        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2
+        # (rrrs-qd_2) rate of joint 2
+        out_qd[_qd_rrrs[1][leg]] = rrrs_qd_2
+        # (rrrs-qd_3) rate of joint 3
         out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
@@ -7432,38 +7955,35 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t,
-            rrrrs_Kd_3_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_joint2_offset_x,
-            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
-            rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
-            rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t,
+            rrrrs_h_3_t_2, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+            rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
         # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
         # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        rrrrs_c_2 = -sin(rrrrs_y_2_extra)
         # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
         rrrrs_s_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
-        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
-        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
         # (rrrrs-px_1) component along the reference direction
         rrrrs_px_1 = (
         rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
@@ -7478,280 +7998,288 @@ def _run_joint_accelerations(m, X, V, A):
         rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
         # (rrrrs-root_1) root, with the sign of the branch
         rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = -inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
         # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
+        rrrrs_xi_1_in_axes1_z = (
         rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
             rrrrs_S_z*rrrrs_base_frame_zx
         )
         # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_in_axes1_z = rrrrs_xi_1_in_axes1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_x = rrrrs_s_2*rrrrs_x_2_in_axes1_z - rrrrs_x_2_t
         rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_x_2_in_axes1_z
         # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
         # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        rrrrs_Kd_3_t = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
         # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
         # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
         # (rrrrs-rho2_3) squared amplitude
         rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
         # (rrrrs-disc_3) discriminant
         rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
         # (rrrrs-root_3) root, with the sign of the branch
         rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
-        )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
         # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
         inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
         rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
         # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
-            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
-            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
-        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
-        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
-        # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        axis_x_rrrrs_axes4_x = (
-        axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y
-        )
-        axis_x_rrrrs_axes4_y = (
-        axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z
-        )
-        axis_x_rrrrs_axes4_z = (
-        axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
-        )
-        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
-        # (rrrrs-w_3) reciprocal vector 2
-        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
         # (rrrrs-S_dot) velocity of the connection point
-        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
-        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
-        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_x - omega_x*rrrrs_q_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_y - omega_y*rrrrs_q_x
         rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
-        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
-        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
-        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
+        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_s_3 + rrrrs_c_3*rrrrs_s_2
+        rrrrs_v_1_t_2 = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_3 = rrrrs_s_2*rrrrs_xi_1_in_axes1_z - rrrrs_x_2_t
+        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_xi_1_in_axes1_z
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
+            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
+            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        )
+        # (rrrrs-w_1) reciprocal vector 1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_S_dot_rest_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_S_dot_rest_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_S_dot_rest_t_3 = rrrrs_S_dot_rest_t*rrrrs_c_2 - rrrrs_S_dot_rest_t_2*rrrrs_s_2
+        rrrrs_S_dot_rest_t_4 = rrrrs_S_dot_rest_t*rrrrs_s_2 + rrrrs_S_dot_rest_t_2*rrrrs_c_2
+        rrrrs_S_dot_rest_t_5 = rrrrs_S_dot_rest_t_3*rrrrs_s_1
+        rrrrs_S_dot_rest_t_6 = rrrrs_S_dot_rest_t_3*rrrrs_c_1
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_xx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_xz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_xy
+        )
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_yx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_yz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_yy
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_S_dot_rest_t_4*rrrrs_base_frame_zx + rrrrs_S_dot_rest_t_6*rrrrs_base_frame_zz -
+            rrrrs_S_dot_rest_t_5*rrrrs_base_frame_zy
+        )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
         rrrrs_S_dot_rest_x = (
-        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_y = (
-        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_y*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_z = (
-        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_z*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_in_axes4_y)
         )
-        # (rrrrs-qd_4) rate of joint 4
+        # (rrrrs-qd_1) rate of joint 1
+        rrrrs_qd_1 = (
+        rrrrs_w_1_in_axes4_z*(axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
+        )
+        # (rrrrs-qd_3) rate of joint 3
         rrrrs_qd_3 = (
-        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
+        # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
-        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
-        )
-        rrrrs_qd_1 = (
-        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
+        rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
-        # (rrrrs-omega_2) angular velocity of link 2
-        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
-        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
-        # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
-        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
-        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
-        # (rrrrs-omega_4) angular velocity of link 4
-        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
-        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
-        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
-        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrrs_beta_3_x = (
-        -rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_omega_2_r0_y*rrrrs_qd_3 - rrrrs_s_3*rrrrs_zeta_2_y
+        rrrrs_omega_1_in_axes2_x = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_in_axes2_y = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
+        rrrrs_omega_1_t_2 = (
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
         )
-        rrrrs_beta_3_y = (
-        rrrrs_omega_2_r0_x*rrrrs_qd_3 + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
-        )
-        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
-        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
-        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_omega_3_r0_x*rrrrs_qd_4
+        rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
+        rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
+        # (rrrrs-W_1) centripetal tensor of link 1
+        rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x
+        rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y
+        rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y
         # (rrrrs-W_2) centripetal tensor of link 2
-        rrrrs_W_2_t = rrrrs_yd_2*rrrrs_yd_2
-        # (rrrrs-W_3) centripetal tensor of link 3
-        rrrrs_W_3_t = rrrrs_omega_3_z*rrrrs_omega_3_z
-        # (rrrrs-W_4) centripetal tensor of link 4
-        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
-        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
-        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
-        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
-        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
-        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
-        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
-        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
-        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
-        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
-        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
-        rrrrs_bias_x = (
-        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
-            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_bias_t_3*(rrrrs_W_3_t + rrrrs_W_4_t_2) -
-            rrrrs_d_3_r1_x*(rrrrs_W_2_t + rrrrs_W_4_t_2) -
-            rrrrs_platform_joint_offset_x*(rrrrs_W_4_t_2 + rrrrs_omega_4_z*rrrrs_omega_4_z)
-        )
-        rrrrs_bias_y = (
-        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
-            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
-            rrrrs_bias_t_4*(rrrrs_W_3_t + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t +
-            rrrrs_W_4_t)
-        )
-        rrrrs_bias_z = (
-        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
-            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
-            rrrrs_beta_3_y*rrrrs_s_4) +
-            rrrrs_platform_joint_offset_x*(rrrrs_omega_3_r0_x*rrrrs_omega_4_z - rrrrs_beta_4_y) +
-            2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
-            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
-        )
+        rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
+        # (rrrrs-omega_3) angular velocity of link 3
+        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
+        # (rrrrs-omega_4) angular velocity of link 4
+        rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4
         # (rrrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_in_base_z - alpha_z*rrrrs_q_in_base_y
-        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_in_base_x - alpha_x*rrrrs_q_in_base_z
-        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_in_base_y - alpha_y*rrrrs_q_in_base_x
+        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_z - alpha_z*rrrrs_q_y
+        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_x - alpha_x*rrrrs_q_z
+        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_y - alpha_y*rrrrs_q_x
         # (rrrrs-S_ddot) acceleration of the connection point
         rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
         rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
         rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_in_axes3_x = (
+        rrrrs_W_2_in_axes2_yz*rrrrs_c_3 + rrrrs_omega_1_t_2*rrrrs_qd_3 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_s_3
+        )
+        rrrrs_beta_3_in_axes3_y = (
+        -rrrrs_W_2_in_axes2_xz*rrrrs_c_3 - rrrrs_W_2_in_axes2_yz*rrrrs_s_3 -
+            rrrrs_omega_1_t*rrrrs_qd_3
+        )
+        rrrrs_beta_3_in_axes4_y = (
+        rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
+        )
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_in_axes2_x = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_d_2_in_axes2_y = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
+        rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
+        rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
+        rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_bias_in_axes4_x = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t) -
+            rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2) -
+            rrrrs_platform_joint_offset_x*(rrrrs_W_1_t_2 +
+            rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z)
+        )
+        rrrrs_bias_in_axes4_y = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
+            - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
+            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_z = (
+        rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
+            rrrrs_platform_joint_offset_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z -
+            rrrrs_beta_4_in_axes4_y) +
+            2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
+        )
         # (rrrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrrs_rel_x = (
+        rrrrs_rel_in_axes4_x = (
         axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
-            axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z + rrrrs_r_2_r1_y*rrrrs_ydd_2 - rrrrs_bias_x
+            axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z + rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 -
+            rrrrs_bias_in_axes4_x
         )
-        rrrrs_rel_y = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
-            + axis_y_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z - rrrrs_bias_y -
-            rrrrs_r_2_r1_x*rrrrs_ydd_2
+        rrrrs_rel_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_y_rrrrs_axes4_z*rrrrs_S_ddot_z - rrrrs_bias_in_axes4_y -
+            rrrrs_r_2_in_axes4_x*rrrrs_ydd_2
         )
-        rrrrs_rel_z = (
-        axis_z_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
-            + axis_z_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z - rrrrs_bias_z
+        rrrrs_rel_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_z_rrrrs_axes4_z*rrrrs_S_ddot_z - rrrrs_bias_in_axes4_z
         )
         # (rrrrs-qdd_1) acceleration of joint 1
-        rrrrs_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_rel_x
-        rrrrs_qdd_4 = inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_y + rrrrs_qdd_3*rrrrs_r_3_r0_x)
-        rrrrs_qdd_1 = inv_rrrrs_v_1_z*rrrrs_rel_z
+        rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
+        # (rrrrs-qdd_3) acceleration of joint 3
+        rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*rrrrs_w_3_in_axes4_x
+        # (rrrrs-qdd_4) acceleration of joint 4
+        rrrrs_qdd_4 = (
+        rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y - rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
+        )
         ok = (
         ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
-            rrrrs_size))
+            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size))
         )
+        # (rrrrs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrrrs[0][leg]] = rrrrs_qdd_1
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qdd[_qdd_rrrrs[1][leg]] = rrrrs_ydd_2
-        out_qdd[_qdd_rrrrs[2][leg]] = -rrrrs_qdd_3
+        # (rrrrs-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_rrrrs[2][leg]] = rrrrs_qdd_3
+        # (rrrrs-qdd_4) acceleration of joint 4
         out_qdd[_qdd_rrrrs[3][leg]] = rrrrs_qdd_4
     for leg, k in legs[1]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t,
-            rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-            rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-            rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-            rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
+            rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -7764,190 +8292,199 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        # (rrrs-qd_1) rate of joint 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
+        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+            rrrs_base_frame_xz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+            rrrs_base_frame_yz*rrrs_qd_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+            rrrs_base_frame_zz*rrrs_qd_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
+        # (rrrs-W_2) centripetal tensor of link 2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_omega_2_r0_x*rrrs_qd_3
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
         rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
+        )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrs_rel_x = (
+        rrrs_rel_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_x
+            axis_x_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_x
         )
-        rrrs_rel_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z - rrrs_bias_y
+        rrrs_rel_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_y
         )
-        rrrs_rel_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z - rrrs_bias_z
+        rrrs_rel_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_ddot_z - rrrs_bias_in_axes3_z
         )
         # (rrrs-qdd_1) acceleration of joint 1
-        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
-        rrrs_qdd_3 = inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x)
-        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
+        rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2) acceleration of joint 2
+        rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
+        # (rrrs-qdd_3) acceleration of joint 3
+        rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
+        # (rrrs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rrrs[0][leg]] = rrrs_qdd_1
-        out_qdd[_qdd_rrrs[1][leg]] = -rrrs_qdd_2
+        # (rrrs-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_rrrs[1][leg]] = rrrs_qdd_2
+        # (rrrs-qdd_3) acceleration of joint 3
         out_qdd[_qdd_rrrs[2][leg]] = rrrs_qdd_3
     return ok, (out_qdd,)
 
@@ -8025,45 +8562,46 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        inv_rrrrs_platform_joint_offset_x, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_J_1_xx,
-            rrrrs_J_2_xy, rrrrs_J_2_xz, rrrrs_J_2_yz, rrrrs_J_3_xy, rrrrs_J_3_xz, rrrrs_J_3_yz,
-            rrrrs_J_4_xy, rrrrs_J_4_xz, rrrrs_J_4_yz, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2,
-            rrrrs_Sigma_2_xx, rrrrs_Sigma_2_yy, rrrrs_Sigma_2_zz, rrrrs_Sigma_3_xx,
-            rrrrs_Sigma_3_yy, rrrrs_Sigma_3_zz, rrrrs_Sigma_4_xx, rrrrs_Sigma_4_yy,
-            rrrrs_Sigma_4_zz, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
-            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
-            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
-            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x, rrrrs_g_r0_y,
-            rrrrs_g_r0_z, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x, rrrrs_h_2_y, rrrrs_h_2_z,
-            rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x, rrrrs_h_4_y, rrrrs_h_4_z,
-            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
-            rrrrs_link4_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-            rrrrs_platform_point_y, rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size,
-            rrrrs_size_t_3,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_J_1_in_spec1_xx, rrrrs_J_2_in_spec2_xy,
+            rrrrs_J_2_in_spec2_xz, rrrrs_J_2_in_spec2_yz, rrrrs_J_3_in_spec3_xy,
+            rrrrs_J_3_in_spec3_xz, rrrrs_J_3_in_spec3_yz, rrrrs_J_4_in_spec4_xy,
+            rrrrs_J_4_in_spec4_xz, rrrrs_J_4_in_spec4_yz, rrrrs_Sigma_2_in_axes2_xx,
+            rrrrs_Sigma_2_in_axes2_yy, rrrrs_Sigma_2_in_axes2_zz, rrrrs_Sigma_3_in_axes3_xx,
+            rrrrs_Sigma_3_in_axes3_yy, rrrrs_Sigma_3_in_axes3_zz, rrrrs_Sigma_4_in_axes4_xx,
+            rrrrs_Sigma_4_in_axes4_yy, rrrrs_Sigma_4_in_axes4_zz, rrrrs_acc_3_t, rrrrs_acc_3_t_2,
+            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
+            rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_y,
+            rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x, rrrrs_h_2_in_spec2_y,
+            rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x, rrrrs_h_3_in_spec3_y,
+            rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2, rrrrs_h_4_in_spec4_x,
+            rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z, rrrrs_joint2_offset_x,
+            rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_link4_mass,
+            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+            rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
+            rrrrs_w_4_in_axes4_y,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         rrrrs_yd_2 = V[[6][leg]]
         rrrrs_ydd_2 = A[[6][leg]]
         # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
         # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        rrrrs_c_2 = -sin(rrrrs_y_2_extra)
         # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
         rrrrs_s_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-Kr_1) right-hand side of the equation of joint 1
-        rrrrs_Kr_1_t = rrrrs_joint2_offset_x*rrrrs_s_2
-        rrrrs_Kr_1_t_2 = rrrrs_c_2_t*rrrrs_joint2_offset_x
         # (rrrrs-px_1) component along the reference direction
         rrrrs_px_1 = (
         rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
@@ -8078,475 +8616,535 @@ def _run_legs(m, X, V, A):
         rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
         # (rrrrs-root_1) root, with the sign of the branch
         rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = -inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
         # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
+        rrrrs_xi_1_in_axes1_z = (
         rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
             rrrrs_S_z*rrrrs_base_frame_zx
         )
         # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_in_axes1_z = rrrrs_xi_1_in_axes1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_x = rrrrs_s_2*rrrrs_x_2_in_axes1_z - rrrrs_x_2_t
         rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_x_2_in_axes1_z
         # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
         # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        rrrrs_Kd_3_t = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
         # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
         # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
         # (rrrrs-rho2_3) squared amplitude
         rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
         # (rrrrs-disc_3) discriminant
         rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
         # (rrrrs-root_3) root, with the sign of the branch
         rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
-        )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
         # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
         inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
         rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
         # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
-            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
-            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
         )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_x = rrrrs_c_4*rrrrs_r_3_x + rrrrs_r_3_t*rrrrs_s_4
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_r_3_t
-        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
-        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
-        # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        axis_x_rrrrs_axes4_x = (
-        axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y
-        )
-        axis_x_rrrrs_axes4_y = (
-        axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z
-        )
-        axis_x_rrrrs_axes4_z = (
-        axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
-        )
-        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
-        # (rrrrs-w_3) reciprocal vector 2
-        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
         # (rrrrs-S_dot) velocity of the connection point
-        rrrrs_S_dot_t = omega_y*rrrrs_q_in_base_z - omega_z*rrrrs_q_in_base_y
-        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_in_base_x - omega_x*rrrrs_q_in_base_z
-        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_in_base_y - omega_y*rrrrs_q_in_base_x
+        rrrrs_S_dot_t = omega_y*rrrrs_q_z - omega_z*rrrrs_q_y
+        rrrrs_S_dot_t_2 = omega_z*rrrrs_q_x - omega_x*rrrrs_q_z
+        rrrrs_S_dot_t_3 = omega_x*rrrrs_q_y - omega_y*rrrrs_q_x
         rrrrs_S_dot_x = rrrrs_S_dot_t + t_dot_x
         rrrrs_S_dot_y = rrrrs_S_dot_t_2 + t_dot_y
         rrrrs_S_dot_z = rrrrs_S_dot_t_3 + t_dot_z
+        # (rrrrs-r_3) from joint 3 to the connection point, along the links
+        rrrrs_r_3_t = rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_x = rrrrs_c_4*rrrrs_r_3_in_axes3_x + rrrrs_r_3_t*rrrrs_s_4_t
+        rrrrs_r_3_in_axes4_y = rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_r_3_t
         # (rrrrs-r_2) from joint 2 to the connection point, along the links
-        rrrrs_r_2_r0_x = rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y
-        rrrrs_r_2_r0_y = rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x
-        rrrrs_r_2_r1_x = rrrrs_c_4*rrrrs_r_2_r0_x - rrrrs_r_2_r0_y*rrrrs_s_4
-        rrrrs_r_2_r1_y = rrrrs_c_4*rrrrs_r_2_r0_y + rrrrs_r_2_r0_x*rrrrs_s_4
+        rrrrs_r_2_t = rrrrs_c_3*rrrrs_x_2_in_axes2_x + rrrrs_s_3*rrrrs_x_2_in_axes2_y
+        rrrrs_r_2_t_2 = rrrrs_c_3*rrrrs_x_2_in_axes2_y - rrrrs_s_3*rrrrs_x_2_in_axes2_x
+        rrrrs_r_2_in_axes4_x = rrrrs_c_4*rrrrs_r_2_t - rrrrs_r_2_t_2*rrrrs_s_4_t
+        rrrrs_r_2_in_axes4_y = rrrrs_c_4*rrrrs_r_2_t_2 + rrrrs_r_2_t*rrrrs_s_4_t
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_s_3 + rrrrs_c_3*rrrrs_s_2
+        rrrrs_v_1_t_2 = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_3 = rrrrs_s_2*rrrrs_xi_1_in_axes1_z - rrrrs_x_2_t
+        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_xi_1_in_axes1_z
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
+            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
+            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        )
+        # (rrrrs-w_1) reciprocal vector 1
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        rrrrs_w_1_x = axis_z_rrrrs_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
+        # (rrrrs-w_3) reciprocal vector 2
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_s_1*rrrrs_w_3_t_3
+        rrrrs_w_3_t_6 = rrrrs_c_1*rrrrs_w_3_t_3
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_base_frame_xx*rrrrs_w_3_t_4 + rrrrs_base_frame_xz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_xy*rrrrs_w_3_t_5
+        )
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_base_frame_yx*rrrrs_w_3_t_4 + rrrrs_base_frame_yz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_yy*rrrrs_w_3_t_5
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_base_frame_zx*rrrrs_w_3_t_4 + rrrrs_base_frame_zz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_zy*rrrrs_w_3_t_5
+        )
+        axis_x_rrrrs_axes4_x = (
+        axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z - axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y
+        )
+        axis_x_rrrrs_axes4_y = (
+        axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x - axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z
+        )
+        axis_x_rrrrs_axes4_z = (
+        axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y - axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x
+        )
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_x = axis_x_rrrrs_axes4_x*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_y = axis_x_rrrrs_axes4_y*rrrrs_w_3_in_axes4_x
+        rrrrs_w_3_z = axis_x_rrrrs_axes4_z*rrrrs_w_3_in_axes4_x
         # (rrrrs-S_dot_rest) velocity of the connection point left to the joints that are not extra
         rrrrs_S_dot_rest_x = (
-        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_x*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_x*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_x - rrrrs_yd_2*(axis_y_rrrrs_axes4_x*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_x*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_y = (
-        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_y*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_y*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_y - rrrrs_yd_2*(axis_y_rrrrs_axes4_y*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_y*rrrrs_r_2_in_axes4_y)
         )
         rrrrs_S_dot_rest_z = (
-        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_in_base_z*rrrrs_r_2_r1_x -
-            axis_x_rrrrs_axes4_z*rrrrs_r_2_r1_y)
+        rrrrs_S_dot_z - rrrrs_yd_2*(axis_y_rrrrs_axes4_z*rrrrs_r_2_in_axes4_x -
+            axis_x_rrrrs_axes4_z*rrrrs_r_2_in_axes4_y)
         )
-        # (rrrrs-qd_4) rate of joint 4
+        # (rrrrs-qd_1) rate of joint 1
+        rrrrs_qd_1 = (
+        rrrrs_w_1_in_axes4_z*(axis_z_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_z_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_z_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
+        )
+        # (rrrrs-qd_3) rate of joint 3
         rrrrs_qd_3 = (
-        inv_rrrrs_r_3_r0_y*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+        rrrrs_w_3_in_axes4_x*(axis_x_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
             axis_x_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_x_rrrrs_axes4_z*rrrrs_S_dot_rest_z)
         )
+        # (rrrrs-qd_4) rate of joint 4
         rrrrs_qd_4 = (
-        inv_rrrrs_platform_joint_offset_x*(axis_y_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_y_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_y_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z + rrrrs_qd_3*rrrrs_r_3_r0_x)
-        )
-        rrrrs_qd_1 = (
-        inv_rrrrs_v_1_z*(axis_z_rrrrs_axes4_in_base_x*rrrrs_S_dot_rest_x +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_S_dot_rest_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_S_dot_rest_z)
+        rrrrs_w_4_in_axes4_y*(axis_y_rrrrs_axes4_x*rrrrs_S_dot_rest_x +
+            axis_y_rrrrs_axes4_y*rrrrs_S_dot_rest_y + axis_y_rrrrs_axes4_z*rrrrs_S_dot_rest_z -
+            rrrrs_qd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-omega_1) angular velocity of link 1
-        rrrrs_omega_1_t = rrrrs_qd_1*rrrrs_s_2
-        rrrrs_omega_1_t_2 = rrrrs_c_2_t*rrrrs_qd_1
-        # (rrrrs-omega_2) angular velocity of link 2
-        rrrrs_omega_2_r0_x = rrrrs_c_3*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_3
-        rrrrs_omega_2_r0_y = -rrrrs_c_3*rrrrs_omega_1_t_2 - rrrrs_omega_1_t*rrrrs_s_3
-        # (rrrrs-omega_3) angular velocity of link 3
-        rrrrs_omega_3_z = rrrrs_yd_2 - rrrrs_qd_3
-        rrrrs_omega_3_r0_x = rrrrs_c_4*rrrrs_omega_2_r0_x - rrrrs_omega_2_r0_y*rrrrs_s_4
-        rrrrs_omega_3_r0_y = rrrrs_c_4*rrrrs_omega_2_r0_y + rrrrs_omega_2_r0_x*rrrrs_s_4
-        # (rrrrs-omega_4) angular velocity of link 4
-        rrrrs_omega_4_z = rrrrs_omega_3_z + rrrrs_qd_4
-        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        rrrrs_zeta_4_y = rrrrs_omega_3_r0_x*rrrrs_qd_4
-        # (rrrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrrs_zeta_2_x = rrrrs_omega_1_t_2*rrrrs_yd_2
-        rrrrs_zeta_2_y = rrrrs_omega_1_t*rrrrs_yd_2
-        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrrs_zeta_3_x = rrrrs_omega_2_r0_y*rrrrs_qd_3
-        rrrrs_zeta_3_y = rrrrs_omega_2_r0_x*rrrrs_qd_3
-        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrrs_beta_3_x = -rrrrs_zeta_3_x - rrrrs_c_3*rrrrs_zeta_2_x - rrrrs_s_3*rrrrs_zeta_2_y
-        rrrrs_beta_3_y = rrrrs_zeta_3_y + rrrrs_s_3*rrrrs_zeta_2_x - rrrrs_c_3*rrrrs_zeta_2_y
-        rrrrs_beta_3_r0_y = rrrrs_beta_3_x*rrrrs_s_4 + rrrrs_beta_3_y*rrrrs_c_4
-        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
-        rrrrs_beta_4_y = rrrrs_beta_3_r0_y - rrrrs_zeta_4_y
+        rrrrs_omega_1_in_axes2_x = rrrrs_qd_1*rrrrs_s_2
+        rrrrs_omega_1_in_axes2_y = rrrrs_c_2*rrrrs_qd_1
+        rrrrs_omega_1_t = rrrrs_c_3*rrrrs_omega_1_in_axes2_x + rrrrs_omega_1_in_axes2_y*rrrrs_s_3
+        rrrrs_omega_1_t_2 = (
+        rrrrs_c_3*rrrrs_omega_1_in_axes2_y - rrrrs_omega_1_in_axes2_x*rrrrs_s_3
+        )
+        rrrrs_omega_1_in_axes4_x = rrrrs_c_4*rrrrs_omega_1_t - rrrrs_omega_1_t_2*rrrrs_s_4_t
+        rrrrs_omega_1_in_axes4_y = rrrrs_c_4*rrrrs_omega_1_t_2 + rrrrs_omega_1_t*rrrrs_s_4_t
+        # (rrrrs-W_1) centripetal tensor of link 1
+        rrrrs_W_1_t = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_x
+        rrrrs_W_1_t_2 = rrrrs_omega_1_in_axes4_y*rrrrs_omega_1_in_axes4_y
+        rrrrs_W_1_in_axes4_xy = rrrrs_omega_1_in_axes4_x*rrrrs_omega_1_in_axes4_y
         # (rrrrs-W_2) centripetal tensor of link 2
-        rrrrs_W_2_t = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
-        rrrrs_W_2_t_2 = rrrrs_yd_2*rrrrs_yd_2
-        rrrrs_W_2_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        rrrrs_W_2_in_axes2_yz = rrrrs_omega_1_in_axes2_y*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xz = rrrrs_omega_1_in_axes2_x*rrrrs_yd_2
+        rrrrs_W_2_in_axes2_xy = rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_y
+        # (rrrrs-omega_3) angular velocity of link 3
+        rrrrs_omega_3_in_axes3_z = rrrrs_qd_3 + rrrrs_yd_2
         # (rrrrs-W_3) centripetal tensor of link 3
-        rrrrs_W_3_t = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_x
-        rrrrs_W_3_t_2 = rrrrs_omega_2_r0_y*rrrrs_omega_2_r0_y
-        rrrrs_W_3_t_3 = rrrrs_omega_3_z*rrrrs_omega_3_z
-        rrrrs_W_3_xy = rrrrs_omega_2_r0_x*rrrrs_omega_2_r0_y
-        rrrrs_W_3_xz = rrrrs_omega_2_r0_x*rrrrs_omega_3_z
-        rrrrs_W_3_yz = rrrrs_omega_2_r0_y*rrrrs_omega_3_z
+        rrrrs_W_3_in_axes3_xy = rrrrs_omega_1_t*rrrrs_omega_1_t_2
+        rrrrs_W_3_in_axes3_xz = rrrrs_omega_1_t*rrrrs_omega_3_in_axes3_z
+        rrrrs_W_3_in_axes3_yz = rrrrs_omega_1_t_2*rrrrs_omega_3_in_axes3_z
+        # (rrrrs-omega_4) angular velocity of link 4
+        rrrrs_omega_4_in_axes4_z = rrrrs_omega_3_in_axes3_z + rrrrs_qd_4
         # (rrrrs-W_4) centripetal tensor of link 4
-        rrrrs_W_4_t = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_x
-        rrrrs_W_4_t_2 = rrrrs_omega_3_r0_y*rrrrs_omega_3_r0_y
-        rrrrs_W_4_t_3 = rrrrs_omega_4_z*rrrrs_omega_4_z
-        rrrrs_W_4_xx = rrrrs_W_4_t_2 + rrrrs_W_4_t_3
-        rrrrs_W_4_xy = rrrrs_omega_3_r0_x*rrrrs_omega_3_r0_y
-        rrrrs_W_4_xz = rrrrs_omega_3_r0_x*rrrrs_omega_4_z
-        rrrrs_W_4_yz = rrrrs_omega_3_r0_y*rrrrs_omega_4_z
-        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrrs_d_2_r2_x = rrrrs_Kr_1_t*rrrrs_c_3 - rrrrs_Kr_1_t_2*rrrrs_s_3
-        rrrrs_d_2_r2_y = -rrrrs_Kr_1_t*rrrrs_s_3 - rrrrs_Kr_1_t_2*rrrrs_c_3
-        rrrrs_d_2_r3_x = rrrrs_c_4*rrrrs_d_2_r2_x - rrrrs_d_2_r2_y*rrrrs_s_4
-        rrrrs_d_2_r3_y = rrrrs_c_4*rrrrs_d_2_r2_y + rrrrs_d_2_r2_x*rrrrs_s_4
-        rrrrs_bias_t = rrrrs_c_3*rrrrs_joint3_offset_x
-        rrrrs_bias_t_2 = rrrrs_joint3_offset_x*rrrrs_s_3
-        rrrrs_d_3_r1_x = rrrrs_bias_t*rrrrs_c_4 + rrrrs_bias_t_2*rrrrs_s_4
-        rrrrs_d_3_r1_y = rrrrs_bias_t*rrrrs_s_4 - rrrrs_bias_t_2*rrrrs_c_4
-        rrrrs_bias_t_3 = rrrrs_c_4*rrrrs_joint4_offset_x
-        rrrrs_bias_t_4 = rrrrs_joint4_offset_x*rrrrs_s_4
-        rrrrs_bias_x = (
-        rrrrs_W_4_xy*rrrrs_bias_t_4 + rrrrs_W_4_xy*rrrrs_d_2_r3_y + rrrrs_W_4_xy*rrrrs_d_3_r1_y -
-            rrrrs_W_4_t_2*rrrrs_d_2_r3_x - rrrrs_W_4_xx*rrrrs_platform_joint_offset_x -
-            rrrrs_bias_t_3*(rrrrs_W_3_t_3 + rrrrs_W_4_t_2) - rrrrs_d_3_r1_x*(rrrrs_W_2_t_2 +
-            rrrrs_W_4_t_2)
-        )
-        rrrrs_bias_y = (
-        rrrrs_W_4_xy*rrrrs_bias_t_3 + rrrrs_W_4_xy*rrrrs_d_2_r3_x + rrrrs_W_4_xy*rrrrs_d_3_r1_x +
-            rrrrs_W_4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_4_t*rrrrs_d_2_r3_y -
-            rrrrs_bias_t_4*(rrrrs_W_3_t_3 + rrrrs_W_4_t) - rrrrs_d_3_r1_y*(rrrrs_W_2_t_2 +
-            rrrrs_W_4_t)
-        )
-        rrrrs_bias_z = (
-        rrrrs_bias_t_3*(rrrrs_omega_3_r0_x*rrrrs_omega_3_z - rrrrs_beta_3_r0_y) +
-            rrrrs_bias_t_4*(rrrrs_beta_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_omega_3_z -
-            rrrrs_beta_3_y*rrrrs_s_4) + rrrrs_platform_joint_offset_x*(rrrrs_W_4_xz -
-            rrrrs_beta_4_y) + 2.0*rrrrs_d_3_r1_x*rrrrs_omega_3_r0_x*rrrrs_yd_2 +
-            2.0*rrrrs_d_3_r1_y*rrrrs_omega_3_r0_y*rrrrs_yd_2
-        )
-        # (rrrrs-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
-        rrrrs_a_o_3_o_t = rrrrs_joint3_offset_x*(rrrrs_W_2_t + rrrrs_W_2_t_2)
-        # (rrrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        rrrrs_g_r1_x = rrrrs_g_r0_y*rrrrs_s_1 - rrrrs_c_1*rrrrs_g_r0_x
-        rrrrs_g_r1_y = -rrrrs_c_1*rrrrs_g_r0_y - rrrrs_g_r0_x*rrrrs_s_1
-        rrrrs_g_r3_x = rrrrs_g_r0_z*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_g_r1_y
-        rrrrs_g_r3_y = -rrrrs_c_2_t*rrrrs_g_r0_z - rrrrs_g_r1_y*rrrrs_s_2
-        # (rrrrs-w_1) reciprocal vector 1
-        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
-        # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = axis_x_rrrrs_axes4_x*inv_rrrrs_r_3_r0_y
-        rrrrs_w_3_t_2 = axis_x_rrrrs_axes4_y*inv_rrrrs_r_3_r0_y
-        rrrrs_w_3_t_3 = axis_x_rrrrs_axes4_z*inv_rrrrs_r_3_r0_y
+        rrrrs_W_4_t = rrrrs_omega_4_in_axes4_z*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_t_2 = rrrrs_W_1_t_2 + rrrrs_W_4_t
+        rrrrs_W_4_in_axes4_xz = rrrrs_omega_1_in_axes4_x*rrrrs_omega_4_in_axes4_z
+        rrrrs_W_4_in_axes4_yz = rrrrs_omega_1_in_axes4_y*rrrrs_omega_4_in_axes4_z
         # (rrrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_in_base_z - alpha_z*rrrrs_q_in_base_y
-        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_in_base_x - alpha_x*rrrrs_q_in_base_z
-        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_in_base_y - alpha_y*rrrrs_q_in_base_x
+        rrrrs_a_p_x = t_ddot_x + alpha_y*rrrrs_q_z - alpha_z*rrrrs_q_y
+        rrrrs_a_p_y = t_ddot_y + alpha_z*rrrrs_q_x - alpha_x*rrrrs_q_z
+        rrrrs_a_p_z = t_ddot_z + alpha_x*rrrrs_q_y - alpha_y*rrrrs_q_x
         # (rrrrs-S_ddot) acceleration of the connection point
         rrrrs_S_ddot_x = rrrrs_a_p_x + omega_y*rrrrs_S_dot_t_3 - omega_z*rrrrs_S_dot_t_2
         rrrrs_S_ddot_y = rrrrs_a_p_y + omega_z*rrrrs_S_dot_t - omega_x*rrrrs_S_dot_t_3
         rrrrs_S_ddot_z = rrrrs_a_p_z + omega_x*rrrrs_S_dot_t_2 - omega_y*rrrrs_S_dot_t
-        rrrrs_S_ddot_tip_x = (
+        rrrrs_S_ddot_in_axes4_x = (
         axis_x_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_x_rrrrs_axes4_y*rrrrs_S_ddot_y +
             axis_x_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
-        rrrrs_S_ddot_tip_y = (
-        axis_y_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
-            + axis_y_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z
+        rrrrs_S_ddot_in_axes4_y = (
+        axis_y_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_y_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_y_rrrrs_axes4_z*rrrrs_S_ddot_z
         )
-        rrrrs_S_ddot_tip_z = (
-        axis_z_rrrrs_axes4_in_base_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_in_base_y*rrrrs_S_ddot_y
-            + axis_z_rrrrs_axes4_in_base_z*rrrrs_S_ddot_z
+        rrrrs_S_ddot_in_axes4_z = (
+        axis_z_rrrrs_axes4_x*rrrrs_S_ddot_x + axis_z_rrrrs_axes4_y*rrrrs_S_ddot_y +
+            axis_z_rrrrs_axes4_z*rrrrs_S_ddot_z
+        )
+        # (rrrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrrs_zeta_3_in_axes3_x = rrrrs_omega_1_t_2*rrrrs_qd_3
+        rrrrs_zeta_3_in_axes3_y = -rrrrs_omega_1_t*rrrrs_qd_3
+        # (rrrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrrs_beta_3_in_axes3_x = (
+        rrrrs_zeta_3_in_axes3_x + rrrrs_W_2_in_axes2_yz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_xz*rrrrs_s_3
+        )
+        rrrrs_beta_3_in_axes3_y = (
+        rrrrs_zeta_3_in_axes3_y - rrrrs_W_2_in_axes2_xz*rrrrs_c_3 -
+            rrrrs_W_2_in_axes2_yz*rrrrs_s_3
+        )
+        rrrrs_beta_3_in_axes4_y = (
+        rrrrs_beta_3_in_axes3_x*rrrrs_s_4_t + rrrrs_beta_3_in_axes3_y*rrrrs_c_4
+        )
+        # (rrrrs-zeta_4) angular acceleration of link 4 from the turning of axis 4
+        rrrrs_zeta_4_t = rrrrs_omega_1_in_axes4_x*rrrrs_qd_4
+        # (rrrrs-beta_4) angular acceleration of link 4 at zero joint accelerations
+        rrrrs_beta_4_in_axes4_y = rrrrs_beta_3_in_axes4_y - rrrrs_zeta_4_t
+        # (rrrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrrs_d_2_in_axes2_x = rrrrs_joint2_offset_x*rrrrs_s_2
+        rrrrs_d_2_in_axes2_y = rrrrs_c_2*rrrrs_joint2_offset_x
+        rrrrs_bias_t = rrrrs_yd_2*rrrrs_yd_2
+        rrrrs_bias_t_2 = rrrrs_omega_3_in_axes3_z*rrrrs_omega_3_in_axes3_z
+        rrrrs_bias_t_3 = rrrrs_c_3*rrrrs_d_2_in_axes2_x + rrrrs_d_2_in_axes2_y*rrrrs_s_3
+        rrrrs_bias_t_4 = rrrrs_c_3*rrrrs_d_2_in_axes2_y - rrrrs_d_2_in_axes2_x*rrrrs_s_3
+        rrrrs_d_2_in_axes4_x = rrrrs_bias_t_3*rrrrs_c_4 - rrrrs_bias_t_4*rrrrs_s_4_t
+        rrrrs_d_2_in_axes4_y = rrrrs_bias_t_3*rrrrs_s_4_t + rrrrs_bias_t_4*rrrrs_c_4
+        rrrrs_bias_t_5 = rrrrs_c_3*rrrrs_joint3_offset_x
+        rrrrs_bias_t_6 = rrrrs_joint3_offset_x*rrrrs_s_3
+        rrrrs_d_3_in_axes4_x = rrrrs_bias_t_5*rrrrs_c_4 + rrrrs_bias_t_6*rrrrs_s_4_t
+        rrrrs_d_3_in_axes4_y = rrrrs_bias_t_5*rrrrs_s_4_t - rrrrs_bias_t_6*rrrrs_c_4
+        rrrrs_d_4_in_axes4_x = rrrrs_c_4*rrrrs_joint4_offset_x
+        rrrrs_d_4_in_axes4_y = rrrrs_joint4_offset_x*rrrrs_s_4_t
+        rrrrs_bias_in_axes4_x = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_y + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_y +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_y - rrrrs_W_1_t_2*rrrrs_d_2_in_axes4_x -
+            rrrrs_W_4_t_2*rrrrs_platform_joint_offset_x - rrrrs_d_3_in_axes4_x*(rrrrs_W_1_t_2 +
+            rrrrs_bias_t) - rrrrs_d_4_in_axes4_x*(rrrrs_W_1_t_2 + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_y = (
+        rrrrs_W_1_in_axes4_xy*rrrrs_d_2_in_axes4_x + rrrrs_W_1_in_axes4_xy*rrrrs_d_3_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_d_4_in_axes4_x +
+            rrrrs_W_1_in_axes4_xy*rrrrs_platform_joint_offset_x - rrrrs_W_1_t*rrrrs_d_2_in_axes4_y
+            - rrrrs_d_3_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t) -
+            rrrrs_d_4_in_axes4_y*(rrrrs_W_1_t + rrrrs_bias_t_2)
+        )
+        rrrrs_bias_in_axes4_z = (
+        rrrrs_d_4_in_axes4_x*(rrrrs_omega_1_in_axes4_x*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes4_y) + rrrrs_d_4_in_axes4_y*(rrrrs_beta_3_in_axes3_x*rrrrs_c_4 +
+            rrrrs_omega_1_in_axes4_y*rrrrs_omega_3_in_axes3_z -
+            rrrrs_beta_3_in_axes3_y*rrrrs_s_4_t) +
+            rrrrs_platform_joint_offset_x*(rrrrs_W_4_in_axes4_xz - rrrrs_beta_4_in_axes4_y) +
+            2.0*rrrrs_d_3_in_axes4_x*rrrrs_omega_1_in_axes4_x*rrrrs_yd_2 +
+            2.0*rrrrs_d_3_in_axes4_y*rrrrs_omega_1_in_axes4_y*rrrrs_yd_2
         )
         # (rrrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrrs_rel_x = rrrrs_S_ddot_tip_x + rrrrs_r_2_r1_y*rrrrs_ydd_2 - rrrrs_bias_x
-        rrrrs_rel_y = rrrrs_S_ddot_tip_y - rrrrs_bias_y - rrrrs_r_2_r1_x*rrrrs_ydd_2
-        rrrrs_rel_z = rrrrs_S_ddot_tip_z - rrrrs_bias_z
+        rrrrs_rel_in_axes4_x = (
+        rrrrs_S_ddot_in_axes4_x + rrrrs_r_2_in_axes4_y*rrrrs_ydd_2 - rrrrs_bias_in_axes4_x
+        )
+        rrrrs_rel_in_axes4_y = (
+        rrrrs_S_ddot_in_axes4_y - rrrrs_bias_in_axes4_y - rrrrs_r_2_in_axes4_x*rrrrs_ydd_2
+        )
+        rrrrs_rel_in_axes4_z = rrrrs_S_ddot_in_axes4_z - rrrrs_bias_in_axes4_z
         # (rrrrs-qdd_1) acceleration of joint 1
-        rrrrs_qdd_3 = inv_rrrrs_r_3_r0_y*rrrrs_rel_x
-        rrrrs_qdd_1 = inv_rrrrs_v_1_z*rrrrs_rel_z
-        # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
-        rrrrs_acc_4_x = (
-        rrrrs_S_ddot_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
-            axis_x_rrrrs_axes4_z*gravity_z
-        )
-        rrrrs_acc_4_y = (
-        rrrrs_S_ddot_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
-            axis_y_rrrrs_axes4_in_base_y*gravity_y - axis_y_rrrrs_axes4_in_base_z*gravity_z
-        )
-        rrrrs_acc_4_z = (
-        rrrrs_S_ddot_tip_z - axis_z_rrrrs_axes4_in_base_x*gravity_x -
-            axis_z_rrrrs_axes4_in_base_y*gravity_y - axis_z_rrrrs_axes4_in_base_z*gravity_z
-        )
+        rrrrs_qdd_1 = rrrrs_rel_in_axes4_z*rrrrs_w_1_in_axes4_z
+        # (rrrrs-qdd_3) acceleration of joint 3
+        rrrrs_qdd_3 = rrrrs_rel_in_axes4_x*rrrrs_w_3_in_axes4_x
         # (rrrrs-alpha_1) angular acceleration of link 1
-        rrrrs_alpha_1_t = rrrrs_qdd_1*rrrrs_s_2
-        rrrrs_alpha_1_t_2 = rrrrs_c_2_t*rrrrs_qdd_1
+        rrrrs_alpha_1_in_axes2_x = rrrrs_qdd_1*rrrrs_s_2
+        rrrrs_alpha_1_in_axes2_y = rrrrs_c_2*rrrrs_qdd_1
         # (rrrrs-alpha_2) angular acceleration of link 2
-        rrrrs_alpha_2_x = rrrrs_alpha_1_t - rrrrs_zeta_2_x
-        rrrrs_alpha_2_y = -rrrrs_alpha_1_t_2 - rrrrs_zeta_2_y
+        rrrrs_alpha_2_in_axes2_x = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_1_in_axes2_x
+        rrrrs_alpha_2_in_axes2_y = rrrrs_alpha_1_in_axes2_y - rrrrs_W_2_in_axes2_xz
+        # (rrrrs-B_2) acceleration tensor of link 2
+        rrrrs_B_2_in_axes2_yx = rrrrs_W_2_in_axes2_xy + rrrrs_ydd_2
+        rrrrs_B_2_in_axes2_zx = rrrrs_W_2_in_axes2_xz - rrrrs_alpha_2_in_axes2_y
+        rrrrs_B_2_in_axes2_zy = rrrrs_W_2_in_axes2_yz + rrrrs_alpha_2_in_axes2_x
         # (rrrrs-alpha_3) angular acceleration of link 3
-        rrrrs_alpha_3_x = rrrrs_alpha_2_x*rrrrs_c_3 + rrrrs_alpha_2_y*rrrrs_s_3 - rrrrs_zeta_3_x
-        rrrrs_alpha_3_y = rrrrs_zeta_3_y + rrrrs_alpha_2_y*rrrrs_c_3 - rrrrs_alpha_2_x*rrrrs_s_3
-        rrrrs_alpha_3_z = rrrrs_ydd_2 - rrrrs_qdd_3
-        # (rrrrs-alpha_4) angular acceleration of link 4
-        rrrrs_alpha_4_x = (
-        rrrrs_alpha_3_x*rrrrs_c_4 + rrrrs_omega_3_r0_y*rrrrs_qd_4 - rrrrs_alpha_3_y*rrrrs_s_4
+        rrrrs_alpha_3_in_axes3_x = (
+        rrrrs_zeta_3_in_axes3_x + rrrrs_alpha_2_in_axes2_x*rrrrs_c_3 +
+            rrrrs_alpha_2_in_axes2_y*rrrrs_s_3
         )
-        rrrrs_alpha_4_y = rrrrs_alpha_3_x*rrrrs_s_4 + rrrrs_alpha_3_y*rrrrs_c_4 - rrrrs_zeta_4_y
-        rrrrs_alpha_4_z = (
-        rrrrs_alpha_3_z + inv_rrrrs_platform_joint_offset_x*(rrrrs_rel_y +
-            rrrrs_qdd_3*rrrrs_r_3_r0_x)
+        rrrrs_alpha_3_in_axes3_y = (
+        rrrrs_zeta_3_in_axes3_y + rrrrs_alpha_2_in_axes2_y*rrrrs_c_3 -
+            rrrrs_alpha_2_in_axes2_x*rrrrs_s_3
+        )
+        rrrrs_alpha_3_in_axes3_z = rrrrs_qdd_3 + rrrrs_ydd_2
+        # (rrrrs-B_3) acceleration tensor of link 3
+        rrrrs_B_3_in_axes3_xy = rrrrs_W_3_in_axes3_xy - rrrrs_alpha_3_in_axes3_z
+        rrrrs_B_3_in_axes3_xz = rrrrs_W_3_in_axes3_xz + rrrrs_alpha_3_in_axes3_y
+        rrrrs_B_3_in_axes3_yx = rrrrs_W_3_in_axes3_xy + rrrrs_alpha_3_in_axes3_z
+        rrrrs_B_3_in_axes3_yz = rrrrs_W_3_in_axes3_yz - rrrrs_alpha_3_in_axes3_x
+        rrrrs_B_3_in_axes3_zx = rrrrs_W_3_in_axes3_xz - rrrrs_alpha_3_in_axes3_y
+        rrrrs_B_3_in_axes3_zy = rrrrs_W_3_in_axes3_yz + rrrrs_alpha_3_in_axes3_x
+        # (rrrrs-alpha_4) angular acceleration of link 4
+        rrrrs_alpha_4_in_axes4_x = (
+        rrrrs_alpha_3_in_axes3_x*rrrrs_c_4 + rrrrs_omega_1_in_axes4_y*rrrrs_qd_4 -
+            rrrrs_alpha_3_in_axes3_y*rrrrs_s_4_t
+        )
+        rrrrs_alpha_4_in_axes4_y = (
+        rrrrs_alpha_3_in_axes3_x*rrrrs_s_4_t + rrrrs_alpha_3_in_axes3_y*rrrrs_c_4 - rrrrs_zeta_4_t
+        )
+        rrrrs_alpha_4_in_axes4_z = (
+        rrrrs_alpha_3_in_axes3_z + rrrrs_w_4_in_axes4_y*(rrrrs_rel_in_axes4_y -
+            rrrrs_qdd_3*rrrrs_r_3_in_axes4_x)
         )
         # (rrrrs-B_4) acceleration tensor of link 4
-        rrrrs_B_4_xy = rrrrs_W_4_xy - rrrrs_alpha_4_z
-        rrrrs_B_4_xz = rrrrs_W_4_xz + rrrrs_alpha_4_y
-        rrrrs_B_4_yx = rrrrs_W_4_xy + rrrrs_alpha_4_z
-        rrrrs_B_4_yz = rrrrs_W_4_yz - rrrrs_alpha_4_x
-        rrrrs_B_4_zx = rrrrs_W_4_xz - rrrrs_alpha_4_y
-        rrrrs_B_4_zy = rrrrs_W_4_yz + rrrrs_alpha_4_x
-        # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
-        rrrrs_mu_4_x = (
-        rrrrs_B_4_yx*rrrrs_J_4_xz + rrrrs_B_4_zy*rrrrs_Sigma_4_yy + rrrrs_J_4_yz*(rrrrs_W_4_t_2 -
-            rrrrs_W_4_t_3) + rrrrs_acc_4_z*rrrrs_h_4_y - rrrrs_B_4_yz*rrrrs_Sigma_4_zz -
-            rrrrs_B_4_zx*rrrrs_J_4_xy - rrrrs_acc_4_y*rrrrs_h_4_z
-        )
-        rrrrs_mu_4_y = (
-        rrrrs_B_4_xz*rrrrs_Sigma_4_zz + rrrrs_B_4_zy*rrrrs_J_4_xy + rrrrs_acc_4_x*rrrrs_h_4_z -
-            rrrrs_B_4_xy*rrrrs_J_4_yz - rrrrs_B_4_zx*rrrrs_Sigma_4_xx - rrrrs_J_4_xz*(rrrrs_W_4_t
-            - rrrrs_W_4_t_3) - rrrrs_acc_4_z*rrrrs_h_4_x
-        )
-        rrrrs_mu_4_z = (
-        rrrrs_B_4_xz*rrrrs_J_4_yz + rrrrs_B_4_yx*rrrrs_Sigma_4_xx + rrrrs_J_4_xy*(rrrrs_W_4_t -
-            rrrrs_W_4_t_2) + rrrrs_acc_4_y*rrrrs_h_4_x - rrrrs_B_4_xy*rrrrs_Sigma_4_yy -
-            rrrrs_B_4_yz*rrrrs_J_4_xz - rrrrs_acc_4_x*rrrrs_h_4_y
-        )
-        # (rrrrs-B_2) acceleration tensor of link 2
-        rrrrs_B_2_yx = rrrrs_ydd_2 - rrrrs_W_2_xy
-        rrrrs_B_2_zx = rrrrs_zeta_2_y - rrrrs_alpha_2_y
-        rrrrs_B_2_zy = rrrrs_alpha_2_x - rrrrs_zeta_2_x
+        rrrrs_B_4_in_axes4_xy = rrrrs_W_1_in_axes4_xy - rrrrs_alpha_4_in_axes4_z
+        rrrrs_B_4_in_axes4_xz = rrrrs_W_4_in_axes4_xz + rrrrs_alpha_4_in_axes4_y
+        rrrrs_B_4_in_axes4_yx = rrrrs_W_1_in_axes4_xy + rrrrs_alpha_4_in_axes4_z
+        rrrrs_B_4_in_axes4_yz = rrrrs_W_4_in_axes4_yz - rrrrs_alpha_4_in_axes4_x
+        rrrrs_B_4_in_axes4_zx = rrrrs_W_4_in_axes4_xz - rrrrs_alpha_4_in_axes4_y
+        rrrrs_B_4_in_axes4_zy = rrrrs_W_4_in_axes4_yz + rrrrs_alpha_4_in_axes4_x
         # (rrrrs-a_o_3) acceleration of the origin of joint 3
-        rrrrs_a_o_3_t = rrrrs_B_2_yx*rrrrs_joint3_offset_x
+        rrrrs_a_o_3_t = rrrrs_omega_1_in_axes2_y*rrrrs_omega_1_in_axes2_y
+        rrrrs_a_o_3_in_axes2_x = -rrrrs_joint3_offset_x*(rrrrs_a_o_3_t + rrrrs_bias_t)
+        rrrrs_a_o_3_in_axes2_y = rrrrs_B_2_in_axes2_yx*rrrrs_joint3_offset_x
         # (rrrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrrs_acc_3_x = (
-        rrrrs_a_o_3_t*rrrrs_s_3 - rrrrs_a_o_3_o_t*rrrrs_c_3 - rrrrs_c_3*rrrrs_g_r3_x -
-            rrrrs_g_r3_y*rrrrs_s_3
+        rrrrs_g_in_axes1_x = rrrrs_acc_3_t*rrrrs_c_1 + rrrrs_acc_3_t_2*rrrrs_s_1
+        rrrrs_g_in_axes1_y = rrrrs_acc_3_t_2*rrrrs_c_1 - rrrrs_acc_3_t*rrrrs_s_1
+        rrrrs_g_in_axes2_x = rrrrs_c_2*rrrrs_g_in_axes1_y + rrrrs_g_in_axes1_z*rrrrs_s_2
+        rrrrs_g_in_axes2_y = rrrrs_c_2*rrrrs_g_in_axes1_z - rrrrs_g_in_axes1_y*rrrrs_s_2
+        rrrrs_acc_3_in_axes3_x = (
+        rrrrs_a_o_3_in_axes2_x*rrrrs_c_3 + rrrrs_a_o_3_in_axes2_y*rrrrs_s_3 -
+            rrrrs_c_3*rrrrs_g_in_axes2_x - rrrrs_g_in_axes2_y*rrrrs_s_3
         )
-        rrrrs_acc_3_y = (
-        rrrrs_a_o_3_o_t*rrrrs_s_3 + rrrrs_a_o_3_t*rrrrs_c_3 + rrrrs_g_r3_x*rrrrs_s_3 -
-            rrrrs_c_3*rrrrs_g_r3_y
+        rrrrs_acc_3_in_axes3_y = (
+        rrrrs_a_o_3_in_axes2_y*rrrrs_c_3 + rrrrs_g_in_axes2_x*rrrrs_s_3 -
+            rrrrs_a_o_3_in_axes2_x*rrrrs_s_3 - rrrrs_c_3*rrrrs_g_in_axes2_y
         )
-        rrrrs_acc_3_z = rrrrs_B_2_zx*rrrrs_joint3_offset_x - rrrrs_g_r1_x
-        # (rrrrs-B_3) acceleration tensor of link 3
-        rrrrs_B_3_xy = rrrrs_W_3_xy - rrrrs_alpha_3_z
-        rrrrs_B_3_xz = rrrrs_W_3_xz + rrrrs_alpha_3_y
-        rrrrs_B_3_yx = rrrrs_W_3_xy + rrrrs_alpha_3_z
-        rrrrs_B_3_yz = rrrrs_W_3_yz - rrrrs_alpha_3_x
-        rrrrs_B_3_zx = rrrrs_W_3_xz - rrrrs_alpha_3_y
-        rrrrs_B_3_zy = rrrrs_W_3_yz + rrrrs_alpha_3_x
+        rrrrs_acc_3_in_axes3_z = rrrrs_B_2_in_axes2_zx*rrrrs_joint3_offset_x - rrrrs_g_in_axes1_x
+        # (rrrrs-f_3) inertia force of link 3 less its weight
+        rrrrs_f_3_t = rrrrs_omega_1_t*rrrrs_omega_1_t
+        rrrrs_f_3_t_2 = rrrrs_omega_1_t_2*rrrrs_omega_1_t_2
+        rrrrs_f_3_in_axes3_z = (
+        rrrrs_B_3_in_axes3_zx*rrrrs_h_3_in_spec3_x + rrrrs_B_3_in_axes3_zy*rrrrs_h_3_in_spec3_y +
+            rrrrs_acc_3_in_axes3_z*rrrrs_link3_mass - rrrrs_h_3_in_spec3_z*(rrrrs_f_3_t +
+            rrrrs_f_3_t_2)
+        )
+        # (rrrrs-acc_4) acceleration of the reference point of link 4, less gravity
+        rrrrs_acc_4_in_axes4_x = (
+        rrrrs_S_ddot_in_axes4_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y
+            - axis_x_rrrrs_axes4_z*gravity_z
+        )
+        rrrrs_acc_4_in_axes4_y = (
+        rrrrs_S_ddot_in_axes4_y - axis_y_rrrrs_axes4_x*gravity_x - axis_y_rrrrs_axes4_y*gravity_y
+            - axis_y_rrrrs_axes4_z*gravity_z
+        )
+        rrrrs_acc_4_in_axes4_z = (
+        rrrrs_S_ddot_in_axes4_z - axis_z_rrrrs_axes4_x*gravity_x - axis_z_rrrrs_axes4_y*gravity_y
+            - axis_z_rrrrs_axes4_z*gravity_z
+        )
+        # (rrrrs-mu_4) inertia moment of the links that turn with link 4, about their reference points
+        rrrrs_mu_4_in_axes4_x = (
+        rrrrs_B_4_in_axes4_yx*rrrrs_J_4_in_spec4_xz +
+            rrrrs_B_4_in_axes4_zy*rrrrs_Sigma_4_in_axes4_yy + rrrrs_J_4_in_spec4_yz*(rrrrs_W_1_t_2
+            - rrrrs_W_4_t) + rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_y -
+            rrrrs_B_4_in_axes4_yz*rrrrs_Sigma_4_in_axes4_zz -
+            rrrrs_B_4_in_axes4_zx*rrrrs_J_4_in_spec4_xy -
+            rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_z
+        )
+        rrrrs_mu_4_in_axes4_y = (
+        rrrrs_B_4_in_axes4_xz*rrrrs_Sigma_4_in_axes4_zz +
+            rrrrs_B_4_in_axes4_zy*rrrrs_J_4_in_spec4_xy +
+            rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_z -
+            rrrrs_B_4_in_axes4_xy*rrrrs_J_4_in_spec4_yz -
+            rrrrs_B_4_in_axes4_zx*rrrrs_Sigma_4_in_axes4_xx - rrrrs_J_4_in_spec4_xz*(rrrrs_W_1_t -
+            rrrrs_W_4_t) - rrrrs_acc_4_in_axes4_z*rrrrs_h_4_in_spec4_x
+        )
+        rrrrs_mu_4_in_axes4_z = (
+        rrrrs_B_4_in_axes4_xz*rrrrs_J_4_in_spec4_yz +
+            rrrrs_B_4_in_axes4_yx*rrrrs_Sigma_4_in_axes4_xx + rrrrs_J_4_in_spec4_xy*(rrrrs_W_1_t -
+            rrrrs_W_1_t_2) + rrrrs_acc_4_in_axes4_y*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_in_axes4_xy*rrrrs_Sigma_4_in_axes4_yy -
+            rrrrs_B_4_in_axes4_yz*rrrrs_J_4_in_spec4_xz -
+            rrrrs_acc_4_in_axes4_x*rrrrs_h_4_in_spec4_y
+        )
         # (rrrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        rrrrs_mu_3_x = (
-        rrrrs_B_3_yx*rrrrs_J_3_xz + rrrrs_B_3_zy*rrrrs_Sigma_3_yy + rrrrs_J_3_yz*(rrrrs_W_3_t_2 -
-            rrrrs_W_3_t_3) + rrrrs_acc_3_z*rrrrs_h_3_y - rrrrs_B_3_yz*rrrrs_Sigma_3_zz -
-            rrrrs_B_3_zx*rrrrs_J_3_xy - rrrrs_acc_3_y*rrrrs_h_3_z
+        rrrrs_mu_3_in_axes3_x = (
+        rrrrs_B_3_in_axes3_yx*rrrrs_J_3_in_spec3_xz +
+            rrrrs_B_3_in_axes3_zy*rrrrs_Sigma_3_in_axes3_yy + rrrrs_J_3_in_spec3_yz*(rrrrs_f_3_t_2
+            - rrrrs_bias_t_2) + rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_y -
+            rrrrs_B_3_in_axes3_yz*rrrrs_Sigma_3_in_axes3_zz -
+            rrrrs_B_3_in_axes3_zx*rrrrs_J_3_in_spec3_xy -
+            rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_z
         )
-        rrrrs_mu_3_y = (
-        rrrrs_B_3_xz*rrrrs_Sigma_3_zz + rrrrs_B_3_zy*rrrrs_J_3_xy + rrrrs_acc_3_x*rrrrs_h_3_z -
-            rrrrs_B_3_xy*rrrrs_J_3_yz - rrrrs_B_3_zx*rrrrs_Sigma_3_xx - rrrrs_J_3_xz*(rrrrs_W_3_t
-            - rrrrs_W_3_t_3) - rrrrs_acc_3_z*rrrrs_h_3_x
+        rrrrs_mu_3_in_axes3_y = (
+        rrrrs_B_3_in_axes3_xz*rrrrs_Sigma_3_in_axes3_zz +
+            rrrrs_B_3_in_axes3_zy*rrrrs_J_3_in_spec3_xy +
+            rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_z -
+            rrrrs_B_3_in_axes3_xy*rrrrs_J_3_in_spec3_yz -
+            rrrrs_B_3_in_axes3_zx*rrrrs_Sigma_3_in_axes3_xx - rrrrs_J_3_in_spec3_xz*(rrrrs_f_3_t -
+            rrrrs_bias_t_2) - rrrrs_acc_3_in_axes3_z*rrrrs_h_3_in_spec3_x
         )
-        rrrrs_mu_3_z = (
-        rrrrs_B_3_xz*rrrrs_J_3_yz + rrrrs_B_3_yx*rrrrs_Sigma_3_xx + rrrrs_J_3_xy*(rrrrs_W_3_t -
-            rrrrs_W_3_t_2) + rrrrs_acc_3_y*rrrrs_h_3_x - rrrrs_B_3_xy*rrrrs_Sigma_3_yy -
-            rrrrs_B_3_yz*rrrrs_J_3_xz - rrrrs_acc_3_x*rrrrs_h_3_y
+        rrrrs_mu_3_in_axes3_z = (
+        rrrrs_B_3_in_axes3_xz*rrrrs_J_3_in_spec3_yz +
+            rrrrs_B_3_in_axes3_yx*rrrrs_Sigma_3_in_axes3_xx + rrrrs_J_3_in_spec3_xy*(rrrrs_f_3_t -
+            rrrrs_f_3_t_2) + rrrrs_acc_3_in_axes3_y*rrrrs_h_3_in_spec3_x -
+            rrrrs_B_3_in_axes3_xy*rrrrs_Sigma_3_in_axes3_yy -
+            rrrrs_B_3_in_axes3_yz*rrrrs_J_3_in_spec3_xz -
+            rrrrs_acc_3_in_axes3_x*rrrrs_h_3_in_spec3_y
         )
         # (rrrrs-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        rrrrs_N_3_x = rrrrs_mu_3_x + rrrrs_c_4*rrrrs_mu_4_x + rrrrs_mu_4_y*rrrrs_s_4
-        rrrrs_N_3_y = rrrrs_mu_3_y + rrrrs_c_4*rrrrs_mu_4_y - rrrrs_mu_4_x*rrrrs_s_4
-        rrrrs_N_3_z = rrrrs_mu_3_z + rrrrs_mu_4_z
-        # (rrrrs-f_3) inertia force of link 3 less its weight
-        rrrrs_f_3_z = (
-        rrrrs_B_3_zx*rrrrs_h_3_x + rrrrs_B_3_zy*rrrrs_h_3_y + rrrrs_acc_3_z*rrrrs_link3_mass -
-            rrrrs_h_3_z*(rrrrs_W_3_t + rrrrs_W_3_t_2)
+        rrrrs_N_3_in_axes3_x = (
+        rrrrs_mu_3_in_axes3_x + rrrrs_c_4*rrrrs_mu_4_in_axes4_x +
+            rrrrs_mu_4_in_axes4_y*rrrrs_s_4_t
         )
+        rrrrs_N_3_in_axes3_y = (
+        rrrrs_mu_3_in_axes3_y + rrrrs_c_4*rrrrs_mu_4_in_axes4_y -
+            rrrrs_mu_4_in_axes4_x*rrrrs_s_4_t
+        )
+        rrrrs_N_3_in_axes3_z = rrrrs_mu_3_in_axes3_z + rrrrs_mu_4_in_axes4_z
         # (rrrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrrrs_mu_2_x = (
-        rrrrs_B_2_yx*rrrrs_J_2_xz + rrrrs_B_2_zy*rrrrs_Sigma_2_yy + rrrrs_J_2_yz*(rrrrs_W_2_t -
-            rrrrs_W_2_t_2) + rrrrs_Sigma_2_zz*rrrrs_alpha_1_t + rrrrs_g_r3_y*rrrrs_h_2_z -
-            rrrrs_B_2_zx*rrrrs_J_2_xy - rrrrs_g_r1_x*rrrrs_h_2_y
+        rrrrs_mu_2_in_axes2_x = (
+        rrrrs_B_2_in_axes2_yx*rrrrs_J_2_in_spec2_xz +
+            rrrrs_B_2_in_axes2_zy*rrrrs_Sigma_2_in_axes2_yy + rrrrs_J_2_in_spec2_yz*(rrrrs_a_o_3_t
+            - rrrrs_bias_t) + rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_x +
+            rrrrs_g_in_axes2_y*rrrrs_h_2_in_spec2_z - rrrrs_B_2_in_axes2_zx*rrrrs_J_2_in_spec2_xy
+            - rrrrs_g_in_axes1_x*rrrrs_h_2_in_spec2_y
         )
-        rrrrs_mu_2_y = (
-        rrrrs_B_2_zy*rrrrs_J_2_xy + rrrrs_g_r1_x*rrrrs_h_2_x - rrrrs_B_2_zx*rrrrs_Sigma_2_xx -
-            rrrrs_J_2_xz*(rrrrs_omega_1_t*rrrrs_omega_1_t - rrrrs_W_2_t_2) -
-            rrrrs_J_2_yz*(-rrrrs_W_2_xy - rrrrs_ydd_2) - rrrrs_Sigma_2_zz*rrrrs_alpha_1_t_2 -
-            rrrrs_g_r3_x*rrrrs_h_2_z
+        rrrrs_mu_2_in_axes2_y = (
+        rrrrs_B_2_in_axes2_zy*rrrrs_J_2_in_spec2_xy +
+            rrrrs_Sigma_2_in_axes2_zz*rrrrs_alpha_1_in_axes2_y +
+            rrrrs_g_in_axes1_x*rrrrs_h_2_in_spec2_x -
+            rrrrs_B_2_in_axes2_zx*rrrrs_Sigma_2_in_axes2_xx -
+            rrrrs_J_2_in_spec2_xz*(rrrrs_omega_1_in_axes2_x*rrrrs_omega_1_in_axes2_x -
+            rrrrs_bias_t) - rrrrs_J_2_in_spec2_yz*(rrrrs_W_2_in_axes2_xy - rrrrs_ydd_2) -
+            rrrrs_g_in_axes2_x*rrrrs_h_2_in_spec2_z
         )
         # (rrrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrrs_N_2_x = rrrrs_mu_2_x + rrrrs_N_3_x*rrrrs_c_3 - rrrrs_N_3_y*rrrrs_s_3
-        rrrrs_N_2_y = (
-        rrrrs_mu_2_y + rrrrs_N_3_x*rrrrs_s_3 + rrrrs_N_3_y*rrrrs_c_3 -
-            rrrrs_f_3_z*rrrrs_joint3_offset_x
+        rrrrs_N_2_in_axes2_x = (
+        rrrrs_mu_2_in_axes2_x + rrrrs_N_3_in_axes3_x*rrrrs_c_3 - rrrrs_N_3_in_axes3_y*rrrrs_s_3
+        )
+        rrrrs_N_2_in_axes2_y = (
+        rrrrs_mu_2_in_axes2_y + rrrrs_N_3_in_axes3_x*rrrrs_s_3 + rrrrs_N_3_in_axes3_y*rrrrs_c_3 -
+            rrrrs_f_3_in_axes3_z*rrrrs_joint3_offset_x
         )
         # (rrrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrrs_mu_1_z = (
-        rrrrs_J_1_xx*rrrrs_qdd_1 - rrrrs_g_r1_x*rrrrs_h_1_y - rrrrs_g_r1_y*rrrrs_h_1_z
+        rrrrs_mu_1_in_axes1_z = (
+        rrrrs_J_1_in_spec1_xx*rrrrs_qdd_1 - rrrrs_g_in_axes1_x*rrrrs_h_1_in_spec1_y -
+            rrrrs_g_in_axes1_y*rrrrs_h_1_in_spec1_z
         )
         # (rrrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrrs_N_1_z = rrrrs_mu_1_z + rrrrs_N_2_x*rrrrs_s_2 - rrrrs_N_2_y*rrrrs_c_2_t
+        rrrrs_N_1_in_axes1_z = (
+        rrrrs_mu_1_in_axes1_z + rrrrs_N_2_in_axes2_x*rrrrs_s_2 + rrrrs_N_2_in_axes2_y*rrrrs_c_2
+        )
         # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_G_t = inv_rrrrs_platform_joint_offset_x*rrrrs_mu_4_z
+        rrrrs_G_in_axes4_y = rrrrs_mu_4_in_axes4_z*rrrrs_w_4_in_axes4_y
         # (rrrrs-c) leg force on the platform without actuation and without the mass at the connection point
-        rrrrs_c_x = (
-        rrrrs_W_4_xx*rrrrs_h_4_x - inv_rrrrs_r_3_r0_y*(rrrrs_G_t*rrrrs_r_3_r0_x - rrrrs_N_3_z) -
-            rrrrs_B_4_xy*rrrrs_h_4_y - rrrrs_B_4_xz*rrrrs_h_4_z
+        rrrrs_c_in_axes4_x = (
+        rrrrs_W_4_t_2*rrrrs_h_4_in_spec4_x +
+            rrrrs_w_3_in_axes4_x*(rrrrs_G_in_axes4_y*rrrrs_r_3_in_axes4_x - rrrrs_N_3_in_axes3_z)
+            - rrrrs_B_4_in_axes4_xy*rrrrs_h_4_in_spec4_y -
+            rrrrs_B_4_in_axes4_xz*rrrrs_h_4_in_spec4_z
         )
-        rrrrs_c_y = (
-        rrrrs_h_4_y*(rrrrs_W_4_t + rrrrs_W_4_t_3) - rrrrs_G_t - rrrrs_B_4_yx*rrrrs_h_4_x -
-            rrrrs_B_4_yz*rrrrs_h_4_z
+        rrrrs_c_in_axes4_y = (
+        rrrrs_h_4_in_spec4_y*(rrrrs_W_1_t + rrrrs_W_4_t) - rrrrs_G_in_axes4_y -
+            rrrrs_B_4_in_axes4_yx*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_in_axes4_yz*rrrrs_h_4_in_spec4_z
         )
-        rrrrs_c_z = (
-        rrrrs_h_4_z*(rrrrs_W_4_t + rrrrs_W_4_t_2) - inv_rrrrs_v_1_z*rrrrs_N_1_z -
-            rrrrs_B_4_zx*rrrrs_h_4_x - rrrrs_B_4_zy*rrrrs_h_4_y
+        rrrrs_c_in_axes4_z = (
+        rrrrs_h_4_in_spec4_z*(rrrrs_W_1_t + rrrrs_W_1_t_2) -
+            rrrrs_B_4_in_axes4_zx*rrrrs_h_4_in_spec4_x -
+            rrrrs_B_4_in_axes4_zy*rrrrs_h_4_in_spec4_y - rrrrs_N_1_in_axes1_z*rrrrs_w_1_in_axes4_z
         )
         # (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included
-        rrrrs_c_true_x = rrrrs_c_x - rrrrs_acc_4_x*rrrrs_link4_mass
-        rrrrs_c_true_y = rrrrs_c_y - rrrrs_acc_4_y*rrrrs_link4_mass
-        rrrrs_c_true_z = rrrrs_c_z - rrrrs_acc_4_z*rrrrs_link4_mass
-        rrrrs_c_true_in_base_x = (
-        axis_x_rrrrs_axes4_x*rrrrs_c_true_x + axis_y_rrrrs_axes4_in_base_x*rrrrs_c_true_y +
-            axis_z_rrrrs_axes4_in_base_x*rrrrs_c_true_z
+        rrrrs_c_true_in_axes4_x = rrrrs_c_in_axes4_x - rrrrs_acc_4_in_axes4_x*rrrrs_link4_mass
+        rrrrs_c_true_in_axes4_y = rrrrs_c_in_axes4_y - rrrrs_acc_4_in_axes4_y*rrrrs_link4_mass
+        rrrrs_c_true_in_axes4_z = rrrrs_c_in_axes4_z - rrrrs_acc_4_in_axes4_z*rrrrs_link4_mass
+        rrrrs_c_true_x = (
+        axis_x_rrrrs_axes4_x*rrrrs_c_true_in_axes4_x +
+            axis_y_rrrrs_axes4_x*rrrrs_c_true_in_axes4_y +
+            axis_z_rrrrs_axes4_x*rrrrs_c_true_in_axes4_z
         )
-        rrrrs_c_true_in_base_y = (
-        axis_x_rrrrs_axes4_y*rrrrs_c_true_x + axis_y_rrrrs_axes4_in_base_y*rrrrs_c_true_y +
-            axis_z_rrrrs_axes4_in_base_y*rrrrs_c_true_z
+        rrrrs_c_true_y = (
+        axis_x_rrrrs_axes4_y*rrrrs_c_true_in_axes4_x +
+            axis_y_rrrrs_axes4_y*rrrrs_c_true_in_axes4_y +
+            axis_z_rrrrs_axes4_y*rrrrs_c_true_in_axes4_z
         )
-        rrrrs_c_true_in_base_z = (
-        axis_x_rrrrs_axes4_z*rrrrs_c_true_x + axis_y_rrrrs_axes4_in_base_z*rrrrs_c_true_y +
-            axis_z_rrrrs_axes4_in_base_z*rrrrs_c_true_z
+        rrrrs_c_true_z = (
+        axis_x_rrrrs_axes4_z*rrrrs_c_true_in_axes4_x +
+            axis_y_rrrrs_axes4_z*rrrrs_c_true_in_axes4_y +
+            axis_z_rrrrs_axes4_z*rrrrs_c_true_in_axes4_z
         )
         ok = (
         ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
             (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >= 0.0)
-            & (abs(rrrrs_v_1_z) > _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE *
-            rrrrs_size))
+            & (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size))
         )
-        out_leg_force[_leg_force_rrrrs[0][leg]] = rrrrs_c_true_in_base_x
-        out_leg_force[_leg_force_rrrrs[1][leg]] = rrrrs_c_true_in_base_y
-        out_leg_force[_leg_force_rrrrs[2][leg]] = rrrrs_c_true_in_base_z
-        out_drive[_drive_rrrrs[0][leg]] = rrrrs_w_1_t_3
-        out_drive[_drive_rrrrs[1][leg]] = rrrrs_w_1_t_4
-        out_drive[_drive_rrrrs[2][leg]] = rrrrs_w_1_t_5
-        out_drive[_drive_rrrrs[3][leg]] = -rrrrs_w_3_t
-        out_drive[_drive_rrrrs[4][leg]] = -rrrrs_w_3_t_2
-        out_drive[_drive_rrrrs[5][leg]] = -rrrrs_w_3_t_3
+        # (rrrrs-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rrrrs[0][leg]] = rrrrs_c_true_x
+        out_leg_force[_leg_force_rrrrs[1][leg]] = rrrrs_c_true_y
+        out_leg_force[_leg_force_rrrrs[2][leg]] = rrrrs_c_true_z
+        # (rrrrs-w_1) reciprocal vector 1
+        out_drive[_drive_rrrrs[0][leg]] = rrrrs_w_1_x
+        out_drive[_drive_rrrrs[1][leg]] = rrrrs_w_1_y
+        out_drive[_drive_rrrrs[2][leg]] = rrrrs_w_1_z
+        # (rrrrs-w_3) reciprocal vector 2
+        out_drive[_drive_rrrrs[3][leg]] = rrrrs_w_3_x
+        out_drive[_drive_rrrrs[4][leg]] = rrrrs_w_3_y
+        out_drive[_drive_rrrrs[5][leg]] = rrrrs_w_3_z
     for leg, k in legs[1]:
         (
-        inv_rrrs_platform_joint_offset_x, inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_xx,
-            rrrs_J_2_xy, rrrs_J_2_xz, rrrs_J_2_yz, rrrs_J_3_xy, rrrs_J_3_xz, rrrs_J_3_yz,
-            rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_Sigma_2_xx, rrrs_Sigma_2_yy, rrrs_Sigma_2_zz,
-            rrrs_Sigma_3_xx, rrrs_Sigma_3_yy, rrrs_Sigma_3_zz, rrrs_base_frame_xx,
-            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
-            rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y,
-            rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y, rrrs_h_3_z, rrrs_joint2_offset_x,
-            rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_platform_joint_offset_x,
-            rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, rrrs_rho2_2_t,
-            rrrs_size, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_J_1_in_spec1_xx, rrrs_J_2_in_spec2_xy,
+            rrrs_J_2_in_spec2_xz, rrrs_J_2_in_spec2_yz, rrrs_J_3_in_spec3_xy,
+            rrrs_J_3_in_spec3_xz, rrrs_J_3_in_spec3_yz, rrrs_Kd_2_t, rrrs_Kd_2_t_2,
+            rrrs_Sigma_2_in_axes2_xx, rrrs_Sigma_2_in_axes2_yy, rrrs_Sigma_2_in_axes2_zz,
+            rrrs_Sigma_3_in_axes3_xx, rrrs_Sigma_3_in_axes3_yy, rrrs_Sigma_3_in_axes3_zz,
+            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+            rrrs_branch_1, rrrs_branch_2, rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_y,
+            rrrs_h_1_in_spec1_z, rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z,
+            rrrs_h_3_in_spec3_x, rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x,
+            rrrs_joint3_offset_x, rrrs_link3_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_rho2_2_t, rrrs_size, rrrs_size_t_3, rrrs_w_3_in_axes3_y,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -8559,336 +9157,364 @@ def _run_legs(m, X, V, A):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
-        )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_x = rrrs_c_3*rrrs_r_2_x + rrrs_r_2_t*rrrs_s_3
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_r_2_t
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        axis_x_rrrs_axes3_x = (
-        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y
-        )
-        axis_x_rrrs_axes3_y = (
-        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z
-        )
-        axis_x_rrrs_axes3_z = (
-        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
         # (rrrs-S_dot) velocity of the connection point
-        rrrs_S_dot_t = omega_y*rrrs_q_in_base_z - omega_z*rrrs_q_in_base_y
-        rrrs_S_dot_t_2 = omega_z*rrrs_q_in_base_x - omega_x*rrrs_q_in_base_z
-        rrrs_S_dot_t_3 = omega_x*rrrs_q_in_base_y - omega_y*rrrs_q_in_base_x
+        rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y
+        rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z
+        rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x
         rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x
         rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y
         rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z
-        # (rrrs-qd_3) rate of joint 3
+        # (rrrs-r_2) from joint 2 to the connection point, along the links
+        rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
+        rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
+        # (rrrs-w_1) reciprocal vector 1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-w_2) reciprocal vector 2
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        axis_x_rrrs_axes3_x = (
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
+        )
+        axis_x_rrrs_axes3_y = (
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x - axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z
+        )
+        axis_x_rrrs_axes3_z = (
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x
+        rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x
+        rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x
+        # (rrrs-qd_1) rate of joint 1
+        rrrs_qd_1 = (
+        rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_dot_z)
+        )
+        # (rrrs-qd_2) rate of joint 2
         rrrs_qd_2 = (
-        inv_rrrs_r_2_r0_y*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
+        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
             axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
+        # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
-        inv_rrrs_platform_joint_offset_x*(axis_y_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_y_rrrs_axes3_in_base_z*rrrs_S_dot_z +
-            rrrs_qd_2*rrrs_r_2_r0_x)
-        )
-        rrrs_qd_1 = (
-        inv_rrrs_v_1_z*(axis_z_rrrs_axes3_in_base_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_in_base_y*rrrs_S_dot_y + axis_z_rrrs_axes3_in_base_z*rrrs_S_dot_z)
+        rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_t_2 = rrrs_c_2*rrrs_qd_1
-        # (rrrs-omega_2) angular velocity of link 2
-        rrrs_omega_2_r0_x = rrrs_omega_1_t_2*rrrs_s_3 - rrrs_c_3*rrrs_omega_1_t
-        rrrs_omega_2_r0_y = -rrrs_c_3*rrrs_omega_1_t_2 - rrrs_omega_1_t*rrrs_s_3
-        # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_z = rrrs_qd_3 - rrrs_qd_2
-        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        rrrs_zeta_3_y = rrrs_omega_2_r0_x*rrrs_qd_3
-        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_x = rrrs_omega_1_t_2*rrrs_qd_2
-        rrrs_zeta_2_y = rrrs_omega_1_t*rrrs_qd_2
-        rrrs_zeta_2_r0_y = rrrs_s_3*rrrs_zeta_2_x - rrrs_c_3*rrrs_zeta_2_y
-        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        rrrs_beta_3_y = rrrs_zeta_2_r0_y - rrrs_zeta_3_y
+        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_in_axes3_x = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
+        )
+        rrrs_omega_1_in_axes3_y = (
+        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
+        )
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_t = rrrs_omega_1_t*rrrs_omega_1_t
-        rrrs_W_2_t_2 = rrrs_omega_1_t_2*rrrs_omega_1_t_2
-        rrrs_W_2_t_3 = rrrs_qd_2*rrrs_qd_2
-        rrrs_W_2_xy = rrrs_omega_1_t*rrrs_omega_1_t_2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
+        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
+        # (rrrs-omega_3) angular velocity of link 3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
         # (rrrs-W_3) centripetal tensor of link 3
-        rrrs_W_3_t = rrrs_omega_2_r0_x*rrrs_omega_2_r0_x
-        rrrs_W_3_t_2 = rrrs_omega_2_r0_y*rrrs_omega_2_r0_y
-        rrrs_W_3_t_3 = rrrs_omega_3_z*rrrs_omega_3_z
-        rrrs_W_3_xy = rrrs_omega_2_r0_x*rrrs_omega_2_r0_y
-        rrrs_W_3_xz = rrrs_omega_2_r0_x*rrrs_omega_3_z
-        rrrs_W_3_yz = rrrs_omega_2_r0_y*rrrs_omega_3_z
-        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
-        rrrs_bias_t_3 = (
-        rrrs_omega_2_r0_x*(-rrrs_bias_t*rrrs_s_3 - rrrs_bias_t_2*rrrs_c_3) -
-            rrrs_omega_2_r0_y*(rrrs_bias_t_2*rrrs_s_3 - rrrs_bias_t*rrrs_c_3)
-        )
-        rrrs_bias_t_4 = rrrs_c_3*rrrs_joint3_offset_x
-        rrrs_bias_t_5 = rrrs_joint3_offset_x*rrrs_s_3
-        rrrs_bias_t_6 = rrrs_bias_t_5*rrrs_qd_2
-        rrrs_bias_t_7 = rrrs_bias_t_4*rrrs_qd_2
-        rrrs_bias_t_8 = rrrs_bias_t_5*rrrs_omega_2_r0_x - rrrs_bias_t_4*rrrs_omega_2_r0_y
-        rrrs_bias_t_9 = rrrs_omega_3_z*rrrs_platform_joint_offset_x
-        rrrs_bias_t_10 = rrrs_omega_2_r0_y*rrrs_platform_joint_offset_x
-        rrrs_bias_x = (
-        rrrs_bias_t_3*rrrs_omega_2_r0_y + rrrs_bias_t_8*rrrs_omega_2_r0_y -
-            rrrs_bias_t_10*rrrs_omega_2_r0_y - rrrs_bias_t_7*rrrs_qd_2 -
-            rrrs_bias_t_9*rrrs_omega_3_z
-        )
-        rrrs_bias_y = (
-        rrrs_bias_t_10*rrrs_omega_2_r0_x - rrrs_bias_t_3*rrrs_omega_2_r0_x -
-            rrrs_bias_t_6*rrrs_qd_2 - rrrs_bias_t_8*rrrs_omega_2_r0_x
-        )
-        rrrs_bias_z = (
-        rrrs_bias_t_5*(rrrs_c_3*rrrs_zeta_2_x + rrrs_s_3*rrrs_zeta_2_y) +
-            rrrs_bias_t_9*rrrs_omega_2_r0_x - rrrs_beta_3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_zeta_2_r0_y - rrrs_bias_t_6*rrrs_omega_2_r0_y -
-            rrrs_bias_t_7*rrrs_omega_2_r0_x
-        )
-        # (rrrs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrrs_g_r1_x = rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x
-        rrrs_g_r1_y = -rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1
-        rrrs_g_r3_x = -rrrs_c_2*rrrs_g_r1_y - rrrs_g_r0_z*rrrs_s_2
-        rrrs_g_r3_y = rrrs_g_r1_y*rrrs_s_2 - rrrs_c_2*rrrs_g_r0_z
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = axis_x_rrrs_axes3_x*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_2 = axis_x_rrrs_axes3_y*inv_rrrs_r_2_r0_y
-        rrrs_w_2_t_3 = axis_x_rrrs_axes3_z*inv_rrrs_r_2_r0_y
+        rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
+        rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
+        rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z
         # (rrrs-a_p) acceleration of the connection point without its centripetal part
-        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_in_base_z - alpha_z*rrrs_q_in_base_y
-        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_in_base_x - alpha_x*rrrs_q_in_base_z
-        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_in_base_y - alpha_y*rrrs_q_in_base_x
+        rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
+        rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
+        rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x
         # (rrrs-S_ddot) acceleration of the connection point
         rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2
         rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
-        rrrs_S_ddot_tip_x = (
+        rrrs_S_ddot_in_axes3_x = (
         axis_x_rrrs_axes3_x*rrrs_S_ddot_x + axis_x_rrrs_axes3_y*rrrs_S_ddot_y +
             axis_x_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        rrrs_S_ddot_tip_y = (
-        axis_y_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_y_rrrs_axes3_in_base_z*rrrs_S_ddot_z
+        rrrs_S_ddot_in_axes3_y = (
+        axis_y_rrrs_axes3_x*rrrs_S_ddot_x + axis_y_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_y_rrrs_axes3_z*rrrs_S_ddot_z
         )
-        rrrs_S_ddot_tip_z = (
-        axis_z_rrrs_axes3_in_base_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_in_base_y*rrrs_S_ddot_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_S_ddot_z
+        rrrs_S_ddot_in_axes3_z = (
+        axis_z_rrrs_axes3_x*rrrs_S_ddot_x + axis_z_rrrs_axes3_y*rrrs_S_ddot_y +
+            axis_z_rrrs_axes3_z*rrrs_S_ddot_z
+        )
+        # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
+        # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
+        rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
+        # (rrrs-bias) acceleration of the connection point at zero joint accelerations
+        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
+        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_3 = (
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
+            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        )
+        rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
+        rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
+        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
+        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_6 = (
+        rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
+        rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
+        rrrs_bias_in_axes3_x = (
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
+            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+            rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
+        )
+        rrrs_bias_in_axes3_y = (
+        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        )
+        rrrs_bias_in_axes3_z = (
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
+            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
         # (rrrs-rel) acceleration of the connection point left to the joint accelerations
-        rrrs_rel_x = rrrs_S_ddot_tip_x - rrrs_bias_x
-        rrrs_rel_y = rrrs_S_ddot_tip_y - rrrs_bias_y
-        rrrs_rel_z = rrrs_S_ddot_tip_z - rrrs_bias_z
+        rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x
+        rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y
+        rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z
         # (rrrs-qdd_1) acceleration of joint 1
-        rrrs_qdd_2 = inv_rrrs_r_2_r0_y*rrrs_rel_x
-        rrrs_qdd_1 = inv_rrrs_v_1_z*rrrs_rel_z
-        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
-        rrrs_acc_3_x = (
-        rrrs_S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
-            axis_x_rrrs_axes3_z*gravity_z
-        )
-        rrrs_acc_3_y = (
-        rrrs_S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
-            axis_y_rrrs_axes3_in_base_y*gravity_y - axis_y_rrrs_axes3_in_base_z*gravity_z
-        )
-        rrrs_acc_3_z = (
-        rrrs_S_ddot_tip_z - axis_z_rrrs_axes3_in_base_x*gravity_x -
-            axis_z_rrrs_axes3_in_base_y*gravity_y - axis_z_rrrs_axes3_in_base_z*gravity_z
-        )
+        rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z
+        # (rrrs-qdd_2) acceleration of joint 2
+        rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
-        rrrs_alpha_1_t_2 = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2
+        rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1
         # (rrrs-alpha_2) angular acceleration of link 2
-        rrrs_alpha_2_x = rrrs_zeta_2_x - rrrs_alpha_1_t
-        rrrs_alpha_2_y = -rrrs_alpha_1_t_2 - rrrs_zeta_2_y
+        rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t
+        rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz
+        # (rrrs-B_2) acceleration tensor of link 2
+        rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2
+        rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2
+        rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y
+        rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
-        rrrs_alpha_3_x = (
-        rrrs_alpha_2_x*rrrs_c_3 + rrrs_omega_2_r0_y*rrrs_qd_3 - rrrs_alpha_2_y*rrrs_s_3
+        rrrs_alpha_3_in_axes3_x = (
+        rrrs_alpha_2_in_axes2_x*rrrs_c_3 + rrrs_omega_1_in_axes3_y*rrrs_qd_3 -
+            rrrs_alpha_2_in_axes2_y*rrrs_s_3_t
         )
-        rrrs_alpha_3_y = rrrs_alpha_2_x*rrrs_s_3 + rrrs_alpha_2_y*rrrs_c_3 - rrrs_zeta_3_y
-        rrrs_alpha_3_z = (
-        inv_rrrs_platform_joint_offset_x*(rrrs_rel_y + rrrs_qdd_2*rrrs_r_2_r0_x) - rrrs_qdd_2
+        rrrs_alpha_3_in_axes3_y = (
+        rrrs_alpha_2_in_axes2_x*rrrs_s_3_t + rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t
+        )
+        rrrs_alpha_3_in_axes3_z = (
+        rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y - rrrs_qdd_2*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-B_3) acceleration tensor of link 3
-        rrrs_B_3_xy = rrrs_W_3_xy - rrrs_alpha_3_z
-        rrrs_B_3_xz = rrrs_W_3_xz + rrrs_alpha_3_y
-        rrrs_B_3_yx = rrrs_W_3_xy + rrrs_alpha_3_z
-        rrrs_B_3_yz = rrrs_W_3_yz - rrrs_alpha_3_x
-        rrrs_B_3_zx = rrrs_W_3_xz - rrrs_alpha_3_y
-        rrrs_B_3_zy = rrrs_W_3_yz + rrrs_alpha_3_x
+        rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z
+        rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y
+        rrrs_B_3_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z
+        rrrs_B_3_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x
+        rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y
+        rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x
+        # (rrrs-acc_3) acceleration of the reference point of link 3, less gravity
+        rrrs_acc_3_in_axes3_x = (
+        rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
+            axis_x_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_in_axes3_y = (
+        rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x - axis_y_rrrs_axes3_y*gravity_y -
+            axis_y_rrrs_axes3_z*gravity_z
+        )
+        rrrs_acc_3_in_axes3_z = (
+        rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x - axis_z_rrrs_axes3_y*gravity_y -
+            axis_z_rrrs_axes3_z*gravity_z
+        )
         # (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        rrrs_mu_3_x = (
-        rrrs_B_3_yx*rrrs_J_3_xz + rrrs_B_3_zy*rrrs_Sigma_3_yy + rrrs_J_3_yz*(rrrs_W_3_t_2 -
-            rrrs_W_3_t_3) + rrrs_acc_3_z*rrrs_h_3_y - rrrs_B_3_yz*rrrs_Sigma_3_zz -
-            rrrs_B_3_zx*rrrs_J_3_xy - rrrs_acc_3_y*rrrs_h_3_z
+        rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
+        rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y
+        rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z
+        rrrs_mu_3_in_axes3_x = (
+        rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz + rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy
+            + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 - rrrs_mu_3_t_3) +
+            rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+            rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z
         )
-        rrrs_mu_3_y = (
-        rrrs_B_3_xz*rrrs_Sigma_3_zz + rrrs_B_3_zy*rrrs_J_3_xy + rrrs_acc_3_x*rrrs_h_3_z -
-            rrrs_B_3_xy*rrrs_J_3_yz - rrrs_B_3_zx*rrrs_Sigma_3_xx - rrrs_J_3_xz*(rrrs_W_3_t -
-            rrrs_W_3_t_3) - rrrs_acc_3_z*rrrs_h_3_x
+        rrrs_mu_3_in_axes3_y = (
+        rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz + rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy
+            + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z -
+            rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
+            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x
         )
-        rrrs_mu_3_z = (
-        rrrs_B_3_xz*rrrs_J_3_yz + rrrs_B_3_yx*rrrs_Sigma_3_xx + rrrs_J_3_xy*(rrrs_W_3_t -
-            rrrs_W_3_t_2) + rrrs_acc_3_y*rrrs_h_3_x - rrrs_B_3_xy*rrrs_Sigma_3_yy -
-            rrrs_B_3_yz*rrrs_J_3_xz - rrrs_acc_3_x*rrrs_h_3_y
+        rrrs_mu_3_in_axes3_z = (
+        rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz + rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx
+            + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t - rrrs_mu_3_t_2) +
+            rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+            rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y
         )
-        # (rrrs-B_2) acceleration tensor of link 2
-        rrrs_B_2_xy = rrrs_W_2_xy + rrrs_qdd_2
-        rrrs_B_2_yx = rrrs_W_2_xy - rrrs_qdd_2
-        rrrs_B_2_zx = rrrs_zeta_2_y - rrrs_alpha_2_y
-        rrrs_B_2_zy = rrrs_alpha_2_x + rrrs_zeta_2_x
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrrs_mu_2_x = (
-        rrrs_B_2_yx*rrrs_J_2_xz + rrrs_B_2_zy*rrrs_Sigma_2_yy + rrrs_J_2_yz*(rrrs_W_2_t_2 -
-            rrrs_W_2_t_3) + rrrs_g_r3_y*rrrs_h_2_z - rrrs_B_2_zx*rrrs_J_2_xy -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_t - rrrs_g_r1_x*rrrs_h_2_y
+        rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
+        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
+        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
+        rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
+        rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_mu_2_in_axes2_x = (
+        rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
+            + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
         )
-        rrrs_mu_2_y = (
-        rrrs_B_2_zy*rrrs_J_2_xy + rrrs_g_r1_x*rrrs_h_2_x - rrrs_B_2_xy*rrrs_J_2_yz -
-            rrrs_B_2_zx*rrrs_Sigma_2_xx - rrrs_J_2_xz*(rrrs_W_2_t - rrrs_W_2_t_3) -
-            rrrs_Sigma_2_zz*rrrs_alpha_1_t_2 - rrrs_g_r3_x*rrrs_h_2_z
+        rrrs_mu_2_in_axes2_y = (
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
-        rrrs_mu_2_z = (
-        rrrs_B_2_yx*rrrs_Sigma_2_xx + rrrs_J_2_xy*(rrrs_W_2_t - rrrs_W_2_t_2) +
-            rrrs_g_r3_x*rrrs_h_2_y - rrrs_B_2_xy*rrrs_Sigma_2_yy - rrrs_J_2_xz*rrrs_alpha_1_t -
-            rrrs_J_2_yz*rrrs_alpha_1_t_2 - rrrs_g_r3_y*rrrs_h_2_x
+        rrrs_mu_2_in_axes2_z = (
+        rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
+            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y +
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
+            - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        rrrs_N_2_x = rrrs_mu_2_x + rrrs_c_3*rrrs_mu_3_x + rrrs_mu_3_y*rrrs_s_3
-        rrrs_N_2_y = rrrs_mu_2_y + rrrs_c_3*rrrs_mu_3_y - rrrs_mu_3_x*rrrs_s_3
-        rrrs_N_2_z = rrrs_mu_2_z + rrrs_mu_3_z
+        rrrs_N_2_in_axes2_x = (
+        rrrs_mu_2_in_axes2_x + rrrs_c_3*rrrs_mu_3_in_axes3_x + rrrs_mu_3_in_axes3_y*rrrs_s_3_t
+        )
+        rrrs_N_2_in_axes2_y = (
+        rrrs_mu_2_in_axes2_y + rrrs_c_3*rrrs_mu_3_in_axes3_y - rrrs_mu_3_in_axes3_x*rrrs_s_3_t
+        )
+        rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrrs_mu_1_z = rrrs_J_1_xx*rrrs_qdd_1 - rrrs_g_r1_x*rrrs_h_1_y - rrrs_g_r1_y*rrrs_h_1_z
+        rrrs_mu_1_in_axes1_z = (
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        )
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrrs_N_1_z = rrrs_mu_1_z - rrrs_N_2_x*rrrs_s_2 - rrrs_N_2_y*rrrs_c_2
+        rrrs_N_1_in_axes1_z = (
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
+        )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_G_t = inv_rrrs_platform_joint_offset_x*rrrs_mu_3_z
+        rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
         # (rrrs-c) leg force on the platform without actuation and without the mass at the connection point
-        rrrs_c_x = (
-        rrrs_h_3_x*(rrrs_W_3_t_2 + rrrs_W_3_t_3) - inv_rrrs_r_2_r0_y*(rrrs_G_t*rrrs_r_2_r0_x -
-            rrrs_N_2_z) - rrrs_B_3_xy*rrrs_h_3_y - rrrs_B_3_xz*rrrs_h_3_z
+        rrrs_c_in_axes3_x = (
+        rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
+            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_y = (
-        rrrs_h_3_y*(rrrs_W_3_t + rrrs_W_3_t_3) - rrrs_G_t - rrrs_B_3_yx*rrrs_h_3_x -
-            rrrs_B_3_yz*rrrs_h_3_z
+        rrrs_c_in_axes3_y = (
+        rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) - rrrs_G_in_axes3_y -
+            rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z
         )
-        rrrs_c_z = (
-        rrrs_h_3_z*(rrrs_W_3_t + rrrs_W_3_t_2) - inv_rrrs_v_1_z*rrrs_N_1_z -
-            rrrs_B_3_zx*rrrs_h_3_x - rrrs_B_3_zy*rrrs_h_3_y
+        rrrs_c_in_axes3_z = (
+        rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
+            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
+            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z
         )
         # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
-        rrrs_c_true_x = rrrs_c_x - rrrs_acc_3_x*rrrs_link3_mass
-        rrrs_c_true_y = rrrs_c_y - rrrs_acc_3_y*rrrs_link3_mass
-        rrrs_c_true_z = rrrs_c_z - rrrs_acc_3_z*rrrs_link3_mass
-        rrrs_c_true_in_base_x = (
-        axis_x_rrrs_axes3_x*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_x*rrrs_c_true_y +
-            axis_z_rrrs_axes3_in_base_x*rrrs_c_true_z
+        rrrs_c_true_in_axes3_x = rrrs_c_in_axes3_x - rrrs_acc_3_in_axes3_x*rrrs_link3_mass
+        rrrs_c_true_in_axes3_y = rrrs_c_in_axes3_y - rrrs_acc_3_in_axes3_y*rrrs_link3_mass
+        rrrs_c_true_in_axes3_z = rrrs_c_in_axes3_z - rrrs_acc_3_in_axes3_z*rrrs_link3_mass
+        rrrs_c_true_x = (
+        axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x + axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z
         )
-        rrrs_c_true_in_base_y = (
-        axis_x_rrrs_axes3_y*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_y*rrrs_c_true_y +
-            axis_z_rrrs_axes3_in_base_y*rrrs_c_true_z
+        rrrs_c_true_y = (
+        axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x + axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z
         )
-        rrrs_c_true_in_base_z = (
-        axis_x_rrrs_axes3_z*rrrs_c_true_x + axis_y_rrrs_axes3_in_base_z*rrrs_c_true_y +
-            axis_z_rrrs_axes3_in_base_z*rrrs_c_true_z
+        rrrs_c_true_z = (
+        axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x + axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+            axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z
         )
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0) &
-            (abs(rrrs_v_1_z) > _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE *
-            rrrs_size))
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
-        out_leg_force[_leg_force_rrrs[0][leg]] = rrrs_c_true_in_base_x
-        out_leg_force[_leg_force_rrrs[1][leg]] = rrrs_c_true_in_base_y
-        out_leg_force[_leg_force_rrrs[2][leg]] = rrrs_c_true_in_base_z
-        out_drive[_drive_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_drive[_drive_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_drive[_drive_rrrs[2][leg]] = rrrs_w_1_t_5
-        out_drive[_drive_rrrs[3][leg]] = -rrrs_w_2_t
-        out_drive[_drive_rrrs[4][leg]] = -rrrs_w_2_t_2
-        out_drive[_drive_rrrs[5][leg]] = -rrrs_w_2_t_3
+        # (rrrs-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rrrs[0][leg]] = rrrs_c_true_x
+        out_leg_force[_leg_force_rrrs[1][leg]] = rrrs_c_true_y
+        out_leg_force[_leg_force_rrrs[2][leg]] = rrrs_c_true_z
+        # (rrrs-w_1) reciprocal vector 1
+        out_drive[_drive_rrrs[0][leg]] = rrrs_w_1_x
+        out_drive[_drive_rrrs[1][leg]] = rrrs_w_1_y
+        out_drive[_drive_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-w_2) reciprocal vector 2
+        out_drive[_drive_rrrs[3][leg]] = rrrs_w_2_x
+        out_drive[_drive_rrrs[4][leg]] = rrrs_w_2_y
+        out_drive[_drive_rrrs[5][leg]] = rrrs_w_2_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -8898,7 +9524,10 @@ def _run_potential(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -8938,153 +9567,157 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrrrs_size_t_2, inv_rrrrs_size_t_3, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_b_r0_x,
-            rrrrs_b_r0_y, rrrrs_b_r0_z, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-            rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-            rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-            rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_r0_x,
-            rrrrs_g_r0_y, rrrrs_g_r0_z, rrrrs_h_1_x, rrrrs_h_1_y, rrrrs_h_1_z, rrrrs_h_2_x,
-            rrrrs_h_2_y, rrrrs_h_2_z, rrrrs_h_3_x, rrrrs_h_3_y, rrrrs_h_3_z, rrrrs_h_4_x,
-            rrrrs_h_4_y, rrrrs_h_4_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-            rrrrs_joint4_offset_x, rrrrs_link1_mass, rrrrs_link2_mass, rrrrs_link3_mass,
-            rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-            rrrrs_platform_point_z, rrrrs_potential_t, rrrrs_potential_t_2, rrrrs_rho2_3_t,
-            rrrrs_size_t_3,
+        inv_rrrrs_size_t, inv_rrrrs_size_t_2, rrrrs_acc_3_t, rrrrs_acc_3_t_2, rrrrs_b_in_spec1_x,
+            rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+            rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+            rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
+            rrrrs_branch_1, rrrrs_branch_3, rrrrs_g_in_axes1_z, rrrrs_h_1_in_spec1_x,
+            rrrrs_h_1_in_spec1_y, rrrrs_h_1_in_spec1_z, rrrrs_h_2_in_spec2_x,
+            rrrrs_h_2_in_spec2_y, rrrrs_h_2_in_spec2_z, rrrrs_h_3_in_spec3_x,
+            rrrrs_h_3_in_spec3_y, rrrrs_h_3_in_spec3_z, rrrrs_h_3_t, rrrrs_h_3_t_2,
+            rrrrs_h_4_in_spec4_x, rrrrs_h_4_in_spec4_y, rrrrs_h_4_in_spec4_z,
+            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link1_mass,
+            rrrrs_link2_mass, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
+            rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z,
+            rrrrs_potential_t, rrrrs_potential_t_2, rrrrs_potential_t_3, rrrrs_potential_t_4,
+            rrrrs_rho2_3_t, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
-        # (rrrrs-S) from the base point to the connection point
-        rrrrs_S_x = (
+        # (rrrrs-h_3) first moment of link 3 about the origin of link 3
+        rrrrs_h_3_t_3 = (
         t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z - rrrrs_base_point_x
         )
-        rrrrs_S_y = (
+        rrrrs_h_3_t_4 = (
         t_y + R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y +
             R_yz*rrrrs_platform_point_z - rrrrs_base_point_y
         )
-        rrrrs_S_z = (
+        rrrrs_h_3_t_5 = (
         t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
             R_zz*rrrrs_platform_point_z - rrrrs_base_point_z
         )
-        # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
-        # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrrs_s_2 = cos(rrrrs_y_2_extra)
-        # (rrrrs-px_1) component along the reference direction
-        rrrrs_px_1 = (
-        rrrrs_S_x*rrrrs_base_frame_xy + rrrrs_S_y*rrrrs_base_frame_yy +
-            rrrrs_S_z*rrrrs_base_frame_zy
+        rrrrs_h_3_t_6 = -sin(rrrrs_y_2_extra)
+        rrrrs_h_3_t_7 = cos(rrrrs_y_2_extra)
+        rrrrs_h_3_t_8 = (
+        rrrrs_base_frame_xy*rrrrs_h_3_t_3 + rrrrs_base_frame_yy*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zy*rrrrs_h_3_t_5
         )
-        # (rrrrs-py_1) component across the reference direction
-        rrrrs_py_1 = (
-        rrrrs_S_x*rrrrs_base_frame_xz + rrrrs_S_y*rrrrs_base_frame_yz +
-            rrrrs_S_z*rrrrs_base_frame_zz
+        rrrrs_h_3_t_9 = (
+        rrrrs_base_frame_xz*rrrrs_h_3_t_3 + rrrrs_base_frame_yz*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zz*rrrrs_h_3_t_5
         )
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
-        # (rrrrs-root_1) root, with the sign of the branch
-        rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
-        # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
-        rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
-            rrrrs_S_z*rrrrs_base_frame_zx
+        rrrrs_h_3_t_10 = rrrrs_h_3_t_8*rrrrs_h_3_t_8 + rrrrs_h_3_t_9*rrrrs_h_3_t_9
+        rrrrs_h_3_t_11 = rrrrs_branch_1*sqrt(rrrrs_h_3_t_10)
+        rrrrs_h_3_t_12 = (
+        rrrrs_base_frame_xx*rrrrs_h_3_t_3 + rrrrs_base_frame_yx*rrrrs_h_3_t_4 +
+            rrrrs_base_frame_zx*rrrrs_h_3_t_5
         )
-        # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_r1_y = rrrrs_root_1*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_x_2_z
-        # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_c_2_t*rrrrs_root_1 + rrrrs_s_2*rrrrs_x_2_z - rrrrs_joint3_offset_x
-        # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
-        # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
-        # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
-        # (rrrrs-disc_3) discriminant
-        rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
-        # (rrrrs-root_3) root, with the sign of the branch
-        rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
+        rrrrs_h_3_t_13 = rrrrs_h_3_t_12 - rrrrs_joint2_offset_x
+        rrrrs_h_3_t_14 = rrrrs_h_3_t_11*rrrrs_h_3_t_7 + rrrrs_h_3_t_13*rrrrs_h_3_t_6
+        rrrrs_h_3_t_15 = (
+        rrrrs_h_3_t_13*rrrrs_h_3_t_7 - rrrrs_joint3_offset_x - rrrrs_h_3_t_11*rrrrs_h_3_t_6
         )
-        # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
-        rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
-        # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
+        rrrrs_h_3_t_16 = rrrrs_h_3_t_14*rrrrs_h_3_t_14 + rrrrs_h_3_t_15*rrrrs_h_3_t_15
+        rrrrs_h_3_t_17 = rrrrs_h_3_t + 0.5*rrrrs_h_3_t_16 - rrrrs_h_3_t_2
+        rrrrs_h_3_t_18 = rrrrs_h_3_t_15*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_19 = rrrrs_h_3_t_14*rrrrs_joint4_offset_x
+        rrrrs_h_3_t_20 = rrrrs_h_3_t_18*rrrrs_h_3_t_18 + rrrrs_h_3_t_19*rrrrs_h_3_t_19
+        rrrrs_h_3_t_21 = rrrrs_h_3_t_20 - rrrrs_h_3_t_17*rrrrs_h_3_t_17
+        rrrrs_h_3_t_22 = rrrrs_branch_3*sqrt(rrrrs_h_3_t_21)
+        inv_rrrrs_h_3_t_20 = 1.0/rrrrs_h_3_t_20
+        rrrrs_h_3_t_23 = (
+        inv_rrrrs_h_3_t_20*(rrrrs_h_3_t_17*rrrrs_h_3_t_18 - rrrrs_h_3_t_19*rrrrs_h_3_t_22)
+        )
+        rrrrs_h_3_t_24 = (
+        inv_rrrrs_h_3_t_20*(rrrrs_h_3_t_17*rrrrs_h_3_t_19 + rrrrs_h_3_t_18*rrrrs_h_3_t_22)
+        )
+        rrrrs_h_3_in_axes2_x = (
+        rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_23 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_24
+        )
         # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        inv_rrrrs_h_3_t_10 = 1.0/rrrrs_h_3_t_10
+        rrrrs_c_1 = -inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_9
         # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        rrrrs_s_1 = inv_rrrrs_h_3_t_10*rrrrs_h_3_t_11*rrrrs_h_3_t_8
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_h_3_t_17*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        )
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_h_3_t_22*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+        )
         # (rrrrs-P_c_3) force that accelerates joint 3, per unit
-        rrrrs_P_c_3_r0_x = -rrrrs_c_3*rrrrs_h_3_y - rrrrs_h_3_x*rrrrs_s_3
-        rrrrs_P_c_3_r0_y = rrrrs_c_3*rrrrs_h_3_x - rrrrs_h_3_y*rrrrs_s_3
-        # (potential) potential energy
-        rrrrs_b_r1_x = rrrrs_b_r0_y*rrrrs_s_1 - rrrrs_b_r0_x*rrrrs_c_1
-        rrrrs_b_r1_y = -rrrrs_b_r0_x*rrrrs_s_1 - rrrrs_b_r0_y*rrrrs_c_1
-        # (rrrrs-h_4) first moment of link 4 about the connection point
-        rrrrs_h_4_r0_x = rrrrs_c_4*rrrrs_h_4_x + rrrrs_h_4_y*rrrrs_s_4
-        rrrrs_h_4_r0_y = rrrrs_c_4*rrrrs_h_4_y - rrrrs_h_4_x*rrrrs_s_4
-        rrrrs_h_4_r1_x = rrrrs_c_3*rrrrs_h_4_r0_x - rrrrs_h_4_r0_y*rrrrs_s_3
-        rrrrs_h_4_r1_y = rrrrs_c_3*rrrrs_h_4_r0_y + rrrrs_h_4_r0_x*rrrrs_s_3
-        # (potential) potential energy
-        rrrrs_potential_t_3 = (
-        rrrrs_h_1_x + rrrrs_potential_t + rrrrs_potential_t_2 + rrrrs_P_c_3_r0_x*rrrrs_c_2_t +
-            rrrrs_P_c_3_r0_y*rrrrs_s_2 + rrrrs_h_2_x*rrrrs_s_2 + rrrrs_h_4_r1_x*rrrrs_s_2 +
-            rrrrs_link3_mass*(rrrrs_b_r0_z + rrrrs_joint2_offset_x +
-            rrrrs_joint3_offset_x*rrrrs_s_2) - rrrrs_c_2_t*rrrrs_h_2_y -
-            rrrrs_c_2_t*rrrrs_h_4_r1_y
+        rrrrs_P_c_3_in_axes2_x = (
+        -rrrrs_h_3_in_spec3_x*rrrrs_h_3_t_24 - rrrrs_h_3_in_spec3_y*rrrrs_h_3_t_23
         )
-        rrrrs_potential_t_4 = (
-        rrrrs_P_c_3_r0_x*rrrrs_s_2 + rrrrs_b_r1_y*rrrrs_link1_mass + rrrrs_b_r1_y*rrrrs_link2_mass
-            + rrrrs_link3_mass*(rrrrs_b_r1_y - rrrrs_c_2_t*rrrrs_joint3_offset_x) - rrrrs_h_1_y -
-            rrrrs_P_c_3_r0_y*rrrrs_c_2_t - rrrrs_c_2_t*rrrrs_h_2_x - rrrrs_c_2_t*rrrrs_h_4_r1_x -
-            rrrrs_h_2_y*rrrrs_s_2 - rrrrs_h_4_r1_y*rrrrs_s_2
+        # (potential) potential energy
+        rrrrs_b_in_spec1_z = rrrrs_c_1*rrrrs_potential_t + rrrrs_potential_t_2*rrrrs_s_1
+        rrrrs_b_in_spec1_y = rrrrs_potential_t*rrrrs_s_1 - rrrrs_c_1*rrrrs_potential_t_2
+        rrrrs_potential_t_5 = rrrrs_c_4*rrrrs_h_4_in_spec4_x + rrrrs_h_4_in_spec4_y*rrrrs_s_4_t
+        rrrrs_potential_t_6 = rrrrs_c_4*rrrrs_h_4_in_spec4_y - rrrrs_h_4_in_spec4_x*rrrrs_s_4_t
+        rrrrs_potential_t_7 = (
+        rrrrs_h_3_t_23*rrrrs_potential_t_5 - rrrrs_h_3_t_24*rrrrs_potential_t_6
         )
-        rrrrs_potential_t_5 = (
-        rrrrs_g_r0_z*rrrrs_potential_t_3 + rrrrs_potential_t_4*(-rrrrs_c_1*rrrrs_g_r0_y -
-            rrrrs_g_r0_x*rrrrs_s_1) + (rrrrs_g_r0_y*rrrrs_s_1 -
-            rrrrs_c_1*rrrrs_g_r0_x)*(rrrrs_h_1_z + rrrrs_h_2_z + rrrrs_h_3_z + rrrrs_h_4_z +
-            rrrrs_b_r1_x*rrrrs_link1_mass + rrrrs_b_r1_x*rrrrs_link2_mass +
-            rrrrs_b_r1_x*rrrrs_link3_mass)
+        rrrrs_potential_t_8 = (
+        rrrrs_h_3_t_23*rrrrs_potential_t_6 + rrrrs_h_3_t_24*rrrrs_potential_t_5
+        )
+        rrrrs_potential_t_9 = (
+        rrrrs_h_1_in_spec1_x + rrrrs_potential_t_3 + rrrrs_potential_t_4 +
+            rrrrs_h_2_in_spec2_x*rrrrs_h_3_t_7 + rrrrs_h_2_in_spec2_y*rrrrs_h_3_t_6 +
+            rrrrs_h_3_in_axes2_x*rrrrs_h_3_t_7 + rrrrs_h_3_t_6*rrrrs_potential_t_8 +
+            rrrrs_h_3_t_7*rrrrs_potential_t_7 + rrrrs_link3_mass*(rrrrs_b_in_spec1_x +
+            rrrrs_joint2_offset_x + rrrrs_h_3_t_7*rrrrs_joint3_offset_x) -
+            rrrrs_P_c_3_in_axes2_x*rrrrs_h_3_t_6
+        )
+        rrrrs_potential_t_10 = (
+        rrrrs_P_c_3_in_axes2_x*rrrrs_h_3_t_7 + rrrrs_h_2_in_spec2_x*rrrrs_h_3_t_6 +
+            rrrrs_h_3_in_axes2_x*rrrrs_h_3_t_6 + rrrrs_h_3_t_6*rrrrs_potential_t_7 +
+            rrrrs_link3_mass*(rrrrs_h_3_t_6*rrrrs_joint3_offset_x - rrrrs_b_in_spec1_y) -
+            rrrrs_h_1_in_spec1_y - rrrrs_b_in_spec1_y*rrrrs_link1_mass -
+            rrrrs_b_in_spec1_y*rrrrs_link2_mass - rrrrs_h_2_in_spec2_y*rrrrs_h_3_t_7 -
+            rrrrs_h_3_t_7*rrrrs_potential_t_8
+        )
+        rrrrs_potential_t_11 = (
+        rrrrs_g_in_axes1_z*rrrrs_potential_t_9 + rrrrs_potential_t_10*(rrrrs_acc_3_t_2*rrrrs_c_1 -
+            rrrrs_acc_3_t*rrrrs_s_1) + (rrrrs_acc_3_t*rrrrs_c_1 +
+            rrrrs_acc_3_t_2*rrrrs_s_1)*(rrrrs_h_1_in_spec1_z + rrrrs_h_2_in_spec2_z +
+            rrrrs_h_3_in_spec3_z + rrrrs_h_4_in_spec4_z + rrrrs_b_in_spec1_z*rrrrs_link1_mass +
+            rrrrs_b_in_spec1_z*rrrrs_link2_mass + rrrrs_b_in_spec1_z*rrrrs_link3_mass)
         )
         ok = (
-        ok & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_disc_3 >=
+        ok & m.every(leg, (abs(rrrrs_h_3_t_10) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
+            (abs(rrrrs_h_3_t_20) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (rrrrs_h_3_t_21 >=
             0.0))
         )
         sums = m.added(sums, leg, (
-        rrrrs_potential_t_5,
+        -rrrrs_potential_t_11,
         ))
-    total_rrrrs, = sums
+    potential_rrrrs, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_b_r0_x, rrrs_b_r0_y,
-            rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-            rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-            rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-            rrrs_branch_1, rrrs_branch_2, rrrs_g_r0_x, rrrs_g_r0_y, rrrs_g_r0_z, rrrs_h_1_x,
-            rrrs_h_1_y, rrrs_h_1_z, rrrs_h_2_x, rrrs_h_2_y, rrrs_h_2_z, rrrs_h_3_x, rrrs_h_3_y,
-            rrrs_h_3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_link1_mass,
-            rrrs_link2_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-            rrrs_platform_point_y, rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2,
-            rrrs_rho2_2_t, rrrs_size_t_3,
+        inv_rrrs_size_t, inv_rrrs_size_t_2, rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx,
+            rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+            rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+            rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_branch_1, rrrs_branch_2,
+            rrrs_g_in_axes1_z, rrrs_h_1_in_spec1_x, rrrs_h_1_in_spec1_y, rrrs_h_1_in_spec1_z,
+            rrrs_h_2_in_spec2_x, rrrs_h_2_in_spec2_y, rrrs_h_2_in_spec2_z, rrrs_h_3_in_spec3_x,
+            rrrs_h_3_in_spec3_y, rrrs_h_3_in_spec3_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+            rrrs_link1_mass, rrrs_link2_mass, rrrs_mu_2_t, rrrs_mu_2_t_2,
+            rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+            rrrs_platform_point_z, rrrs_potential_t, rrrs_potential_t_2, rrrs_potential_t_3,
+            rrrs_potential_t_4, rrrs_rho2_2_t, rrrs_size_t_3,
         ) = k
         # (rrrs-S) from the base point to the connection point
         rrrs_S_x = (
@@ -9111,71 +9744,75 @@ def _run_potential(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (potential) potential energy
-        rrrs_b_r1_x = rrrs_b_r0_y*rrrs_s_1 - rrrs_b_r0_x*rrrs_c_1
-        rrrs_b_r1_y = -rrrs_b_r0_x*rrrs_s_1 - rrrs_b_r0_y*rrrs_c_1
-        # (rrrs-h_3) first moment of link 3 about the connection point
-        rrrs_h_3_r0_x = rrrs_c_3*rrrs_h_3_x + rrrs_h_3_y*rrrs_s_3
-        rrrs_h_3_r0_y = rrrs_c_3*rrrs_h_3_y - rrrs_h_3_x*rrrs_s_3
-        # (potential) potential energy
-        rrrs_potential_t_3 = (
-        (-rrrs_c_1*rrrs_g_r0_y - rrrs_g_r0_x*rrrs_s_1)*(rrrs_b_r1_y*rrrs_link1_mass +
-            rrrs_b_r1_y*rrrs_link2_mass + rrrs_h_2_y*rrrs_s_2 + rrrs_h_3_r0_y*rrrs_s_2 -
-            rrrs_h_1_y - rrrs_c_2*rrrs_h_2_x - rrrs_c_2*rrrs_h_3_r0_x)
+        rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1
+        rrrs_b_in_spec1_y = rrrs_potential_t*rrrs_s_1 - rrrs_c_1*rrrs_potential_t_2
+        rrrs_potential_t_5 = rrrs_c_3*rrrs_h_3_in_spec3_x + rrrs_h_3_in_spec3_y*rrrs_s_3_t
+        rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y - rrrs_h_3_in_spec3_x*rrrs_s_3_t
+        rrrs_potential_t_7 = (
+        (rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1)*(rrrs_c_2*rrrs_h_2_in_spec2_x +
+            rrrs_c_2*rrrs_potential_t_5 - rrrs_h_1_in_spec1_y - rrrs_b_in_spec1_y*rrrs_link1_mass
+            - rrrs_b_in_spec1_y*rrrs_link2_mass - rrrs_h_2_in_spec2_y*rrrs_s_2 -
+            rrrs_potential_t_6*rrrs_s_2)
         )
-        rrrs_potential_t_4 = (
-        rrrs_potential_t_3 + rrrs_g_r0_z*(rrrs_h_1_x + rrrs_potential_t + rrrs_potential_t_2 -
-            rrrs_c_2*rrrs_h_2_y - rrrs_c_2*rrrs_h_3_r0_y - rrrs_h_2_x*rrrs_s_2 -
-            rrrs_h_3_r0_x*rrrs_s_2) + (rrrs_g_r0_y*rrrs_s_1 - rrrs_c_1*rrrs_g_r0_x)*(rrrs_h_1_z +
-            rrrs_h_2_z + rrrs_h_3_z + rrrs_b_r1_x*rrrs_link1_mass + rrrs_b_r1_x*rrrs_link2_mass)
+        rrrs_potential_t_8 = (
+        rrrs_potential_t_7 + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x + rrrs_potential_t_3 +
+            rrrs_potential_t_4 + rrrs_c_2*rrrs_h_2_in_spec2_y + rrrs_c_2*rrrs_potential_t_6 +
+            rrrs_h_2_in_spec2_x*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t +
+            rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
+            rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
+            rrrs_b_in_spec1_z*rrrs_link2_mass)
         )
         ok = (
         ok & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
             (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (rrrs_disc_2 >= 0.0))
         )
         sums = m.added(sums, leg, (
-        rrrs_potential_t_4,
+        rrrs_potential_t_8,
         ))
-    total_rrrs, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_rrrrs - total_rrrs
+    potential = potential_rrrrs - potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -9187,7 +9824,7 @@ def _run_condition(m, X):
     cos = m.cos
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -9230,35 +9867,36 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_rrrrs_rho2_3_t_4, inv_rrrrs_size, inv_rrrrs_size_t_2, inv_rrrrs_size_t_3,
-            inv_rrrrs_size_t_4, rrrrs_Kd_3_t, rrrrs_Kd_3_t_2, rrrrs_base_frame_xx,
-            rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-            rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-            rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_branch_1,
-            rrrrs_branch_3, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        inv_rrrrs_rho2_3_t, inv_rrrrs_size, inv_rrrrs_size_t, inv_rrrrs_size_t_2,
+            inv_rrrrs_size_t_3, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+            rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+            rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+            rrrrs_base_point_z, rrrrs_branch_1, rrrrs_branch_3, rrrrs_h_3_t, rrrrs_h_3_t_2,
+            rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
             rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
             rrrrs_platform_point_z, rrrrs_rho2_3_t, rrrrs_size, rrrrs_size_t_3,
         ) = k
         rrrrs_y_2_extra = X[[7][leg]]
         # (rrrrs-S) from the base point to the connection point
-        rrrrs_q_in_base_x = (
+        rrrrs_q_x = (
         R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_y = (
+        rrrrs_q_y = (
         R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
         )
-        rrrrs_q_in_base_z = (
+        rrrrs_q_z = (
         R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         )
-        rrrrs_S_x = rrrrs_q_in_base_x + t_x - rrrrs_base_point_x
-        rrrrs_S_y = rrrrs_q_in_base_y + t_y - rrrrs_base_point_y
-        rrrrs_S_z = rrrrs_q_in_base_z + t_z - rrrrs_base_point_z
+        rrrrs_S_x = rrrrs_q_x + t_x - rrrrs_base_point_x
+        rrrrs_S_y = rrrrs_q_y + t_y - rrrrs_base_point_y
+        rrrrs_S_z = rrrrs_q_z + t_z - rrrrs_base_point_z
         # (rrrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrrs_c_2_t = sin(rrrrs_y_2_extra)
+        rrrrs_c_2 = -sin(rrrrs_y_2_extra)
         # (rrrrs-s_2) sine of the angle of joint 2 from its reference direction
         rrrrs_s_2 = cos(rrrrs_y_2_extra)
         # (rrrrs-px_1) component along the reference direction
@@ -9275,184 +9913,180 @@ def _run_condition(m, X):
         rrrrs_rho2_1 = rrrrs_px_1*rrrrs_px_1 + rrrrs_py_1*rrrrs_py_1
         # (rrrrs-root_1) root, with the sign of the branch
         rrrrs_root_1 = rrrrs_branch_1*sqrt(rrrrs_rho2_1)
+        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
+        rrrrs_c_1 = -inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
+        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
         # (rrrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrrs_xi_1_t = (
+        rrrrs_xi_1_in_axes1_z = (
         rrrrs_S_x*rrrrs_base_frame_xx + rrrrs_S_y*rrrrs_base_frame_yx +
             rrrrs_S_z*rrrrs_base_frame_zx
         )
         # (rrrrs-x_2) from the origin of joint 2 to the connection point
-        rrrrs_x_2_z = rrrrs_xi_1_t - rrrrs_joint2_offset_x
-        rrrrs_x_2_t = rrrrs_c_2_t*rrrrs_root_1
-        rrrrs_x_2_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_x_2_z
+        rrrrs_x_2_in_axes1_z = rrrrs_xi_1_in_axes1_z - rrrrs_joint2_offset_x
+        rrrrs_x_2_t = rrrrs_c_2*rrrrs_root_1
+        rrrrs_x_2_in_axes2_x = rrrrs_s_2*rrrrs_x_2_in_axes1_z - rrrrs_x_2_t
         rrrrs_x_2_t_2 = rrrrs_root_1*rrrrs_s_2
-        rrrrs_x_2_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_x_2_z
+        rrrrs_x_2_in_axes2_y = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_x_2_in_axes1_z
         # (rrrrs-x_3) from the origin of joint 3 to the connection point
-        rrrrs_x_3_x = rrrrs_x_2_r1_x - rrrrs_joint3_offset_x
+        rrrrs_x_3_in_axes2_x = rrrrs_x_2_in_axes2_x - rrrrs_joint3_offset_x
         # (rrrrs-Kd_3) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-        rrrrs_Kd_3_t_3 = rrrrs_x_2_r1_y*rrrrs_x_2_r1_y + rrrrs_x_3_x*rrrrs_x_3_x
-        rrrrs_Kd_3 = rrrrs_Kd_3_t + 0.5*rrrrs_Kd_3_t_3 - rrrrs_Kd_3_t_2
+        rrrrs_Kd_3_t = (
+        rrrrs_x_2_in_axes2_y*rrrrs_x_2_in_axes2_y + rrrrs_x_3_in_axes2_x*rrrrs_x_3_in_axes2_x
+        )
+        rrrrs_Kd_3 = 0.5*rrrrs_Kd_3_t + rrrrs_h_3_t - rrrrs_h_3_t_2
         # (rrrrs-Kc_3) factor of the cosine in the equation of joint 3
-        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_x
+        rrrrs_Kc_3 = rrrrs_joint4_offset_x*rrrrs_x_3_in_axes2_x
         # (rrrrs-Ks_3) factor of the sine in the equation of joint 3
-        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_r1_y
+        rrrrs_Ks_3 = rrrrs_joint4_offset_x*rrrrs_x_2_in_axes2_y
         # (rrrrs-rho2_3) squared amplitude
         rrrrs_rho2_3 = rrrrs_Kc_3*rrrrs_Kc_3 + rrrrs_Ks_3*rrrrs_Ks_3
         # (rrrrs-disc_3) discriminant
         rrrrs_disc_3 = rrrrs_rho2_3 - rrrrs_Kd_3*rrrrs_Kd_3
         # (rrrrs-root_3) root, with the sign of the branch
         rrrrs_root_3 = rrrrs_branch_3*sqrt(rrrrs_disc_3)
-        # (rrrrs-x_4) from the origin of joint 4 to the connection point
-        rrrrs_x_4_x = inv_rrrrs_size_t_2*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
-        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
-        rrrrs_c_4 = inv_rrrrs_size_t_3*rrrrs_platform_joint_offset_x*rrrrs_x_4_x
-        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
-        rrrrs_s_4 = (
-        inv_rrrrs_size_t_2*inv_rrrrs_size_t_3*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
-        )
-        # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
         # (rrrrs-c_3) cosine of the angle of joint 3 from its reference direction
         inv_rrrrs_rho2_3 = 1.0/rrrrs_rho2_3
         rrrrs_c_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_Kd_3 - rrrrs_Ks_3*rrrrs_root_3)
         # (rrrrs-s_3) sine of the angle of joint 3 from its reference direction
         rrrrs_s_3 = inv_rrrrs_rho2_3*(rrrrs_Kc_3*rrrrs_root_3 + rrrrs_Kd_3*rrrrs_Ks_3)
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_e_1_r2_x = rrrrs_c_3*rrrrs_s_2 - rrrrs_c_2_t*rrrrs_s_3
-        rrrrs_e_1_r2_y = -rrrrs_c_2_t*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
-        # (rrrrs-r_1) from joint 1 to the connection point, along the links
-        rrrrs_r_1_r1_x = rrrrs_x_2_t + rrrrs_s_2*rrrrs_xi_1_t
-        rrrrs_r_1_r1_y = rrrrs_x_2_t_2 - rrrrs_c_2_t*rrrrs_xi_1_t
-        rrrrs_r_1_r2_x = rrrrs_c_3*rrrrs_r_1_r1_x + rrrrs_r_1_r1_y*rrrrs_s_3
-        rrrrs_r_1_r2_y = rrrrs_c_3*rrrrs_r_1_r1_y - rrrrs_r_1_r1_x*rrrrs_s_3
-        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrrs_v_1_z = (
-        (rrrrs_c_4*rrrrs_e_1_r2_x - rrrrs_e_1_r2_y*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_y +
-            rrrrs_r_1_r2_x*rrrrs_s_4) - (rrrrs_c_4*rrrrs_e_1_r2_y +
-            rrrrs_e_1_r2_x*rrrrs_s_4)*(rrrrs_c_4*rrrrs_r_1_r2_x - rrrrs_r_1_r2_y*rrrrs_s_4)
+        # (rrrrs-x_4) from the origin of joint 4 to the connection point
+        rrrrs_x_4_in_axes3_x = (
+        inv_rrrrs_size_t*rrrrs_Kd_3*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+        )
+        # (rrrrs-c_4) cosine of the angle of joint 4 from its reference direction
+        rrrrs_c_4 = inv_rrrrs_size_t_2*rrrrs_platform_joint_offset_x*rrrrs_x_4_in_axes3_x
+        # (rrrrs-s_4) sine of the angle of joint 4 from its reference direction
+        rrrrs_s_4_t = (
+        inv_rrrrs_size_t*inv_rrrrs_size_t_2*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x*rrrrs_root_3
         )
         # (rrrrs-r_3) from joint 3 to the connection point, along the links
-        rrrrs_r_3_r0_y = rrrrs_r_3_x*rrrrs_s_4 - rrrrs_c_4*rrrrs_platform_joint_offset_x*rrrrs_s_4
-        # (rrrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrrs_rho2_1 = 1.0/rrrrs_rho2_1
-        rrrrs_c_1 = inv_rrrrs_rho2_1*rrrrs_py_1*rrrrs_root_1
-        # (rrrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrrs_s_1 = inv_rrrrs_rho2_1*rrrrs_px_1*rrrrs_root_1
+        rrrrs_r_3_in_axes3_x = rrrrs_joint4_offset_x + rrrrs_c_4*rrrrs_platform_joint_offset_x
+        rrrrs_r_3_in_axes4_y = (
+        rrrrs_r_3_in_axes3_x*rrrrs_s_4_t - rrrrs_c_4*rrrrs_platform_joint_offset_x*rrrrs_s_4_t
+        )
+        # (rrrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrrs_v_1_t = rrrrs_c_2*rrrrs_s_3 + rrrrs_c_3*rrrrs_s_2
+        rrrrs_v_1_t_2 = rrrrs_c_2*rrrrs_c_3 - rrrrs_s_2*rrrrs_s_3
+        rrrrs_v_1_t_3 = rrrrs_s_2*rrrrs_xi_1_in_axes1_z - rrrrs_x_2_t
+        rrrrs_v_1_t_4 = rrrrs_x_2_t_2 + rrrrs_c_2*rrrrs_xi_1_in_axes1_z
+        rrrrs_v_1_t_5 = rrrrs_c_3*rrrrs_v_1_t_3 + rrrrs_s_3*rrrrs_v_1_t_4
+        rrrrs_v_1_t_6 = rrrrs_c_3*rrrrs_v_1_t_4 - rrrrs_s_3*rrrrs_v_1_t_3
+        rrrrs_v_1_in_axes4_z = (
+        (rrrrs_c_4*rrrrs_v_1_t - rrrrs_s_4_t*rrrrs_v_1_t_2)*(rrrrs_c_4*rrrrs_v_1_t_6 +
+            rrrrs_s_4_t*rrrrs_v_1_t_5) - (rrrrs_c_4*rrrrs_v_1_t_2 +
+            rrrrs_s_4_t*rrrrs_v_1_t)*(rrrrs_c_4*rrrrs_v_1_t_5 - rrrrs_s_4_t*rrrrs_v_1_t_6)
+        )
         # (rrrrs-w_1) reciprocal vector 1
-        axis_z_rrrrs_axes4_in_base_x = (
-        rrrrs_base_frame_xz*rrrrs_s_1 - rrrrs_base_frame_xy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_y = (
-        rrrrs_base_frame_yz*rrrrs_s_1 - rrrrs_base_frame_yy*rrrrs_c_1
-        )
-        axis_z_rrrrs_axes4_in_base_z = (
-        rrrrs_base_frame_zz*rrrrs_s_1 - rrrrs_base_frame_zy*rrrrs_c_1
-        )
-        axis_y_rrrrs_axes4_r1_x = rrrrs_c_3*rrrrs_s_4 - rrrrs_c_4*rrrrs_s_3
-        axis_y_rrrrs_axes4_r1_y = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4
-        axis_y_rrrrs_axes4_r2_x = (
-        -axis_y_rrrrs_axes4_r1_x*rrrrs_c_2_t - axis_y_rrrrs_axes4_r1_y*rrrrs_s_2
-        )
-        axis_y_rrrrs_axes4_r2_y = (
-        axis_y_rrrrs_axes4_r1_x*rrrrs_s_2 - axis_y_rrrrs_axes4_r1_y*rrrrs_c_2_t
-        )
-        rrrrs_w_1_t = axis_y_rrrrs_axes4_r2_x*rrrrs_s_1
-        rrrrs_w_1_t_2 = axis_y_rrrrs_axes4_r2_x*rrrrs_c_1
-        axis_y_rrrrs_axes4_in_base_x = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*rrrrs_w_1_t -
-            rrrrs_base_frame_xz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_y = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*rrrrs_w_1_t -
-            rrrrs_base_frame_yz*rrrrs_w_1_t_2
-        )
-        axis_y_rrrrs_axes4_in_base_z = (
-        axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*rrrrs_w_1_t -
-            rrrrs_base_frame_zz*rrrrs_w_1_t_2
-        )
-        inv_rrrrs_v_1_z = 1.0/rrrrs_v_1_z
+        axis_z_rrrrs_axes4_x = rrrrs_base_frame_xy*rrrrs_c_1 + rrrrs_base_frame_xz*rrrrs_s_1
+        axis_z_rrrrs_axes4_y = rrrrs_base_frame_yy*rrrrs_c_1 + rrrrs_base_frame_yz*rrrrs_s_1
+        axis_z_rrrrs_axes4_z = rrrrs_base_frame_zy*rrrrs_c_1 + rrrrs_base_frame_zz*rrrrs_s_1
+        rrrrs_w_1_in_axes4_z = 1.0/rrrrs_v_1_in_axes4_z
+        rrrrs_w_1_x = axis_z_rrrrs_axes4_x*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_y = axis_z_rrrrs_axes4_y*rrrrs_w_1_in_axes4_z
+        rrrrs_w_1_z = axis_z_rrrrs_axes4_z*rrrrs_w_1_in_axes4_z
         # (rrrrs-w_3) reciprocal vector 2
-        inv_rrrrs_r_3_r0_y = 1.0/rrrrs_r_3_r0_y
-        # (rrrrs-dy_2_qdd_1) coefficient of the acceleration in: acceleration of joint 1
-        rrrrs_dy_2_qdd_3 = (
-        inv_rrrrs_r_3_r0_y*(rrrrs_c_4*(rrrrs_c_3*rrrrs_x_2_r1_y - rrrrs_s_3*rrrrs_x_2_r1_x) +
-            rrrrs_s_4*(rrrrs_c_3*rrrrs_x_2_r1_x + rrrrs_s_3*rrrrs_x_2_r1_y))
+        rrrrs_w_3_t = rrrrs_c_3*rrrrs_s_4_t - rrrrs_c_4*rrrrs_s_3
+        rrrrs_w_3_t_2 = rrrrs_c_3*rrrrs_c_4 + rrrrs_s_3*rrrrs_s_4_t
+        rrrrs_w_3_t_3 = rrrrs_c_2*rrrrs_w_3_t - rrrrs_s_2*rrrrs_w_3_t_2
+        rrrrs_w_3_t_4 = rrrrs_c_2*rrrrs_w_3_t_2 + rrrrs_s_2*rrrrs_w_3_t
+        rrrrs_w_3_t_5 = rrrrs_s_1*rrrrs_w_3_t_3
+        rrrrs_w_3_t_6 = rrrrs_c_1*rrrrs_w_3_t_3
+        axis_y_rrrrs_axes4_x = (
+        rrrrs_base_frame_xx*rrrrs_w_3_t_4 + rrrrs_base_frame_xz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_xy*rrrrs_w_3_t_5
         )
-        # (rrrrs-w_1) reciprocal vector 1
-        rrrrs_w_1_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_rrrrs_v_1_z
-        rrrrs_w_1_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_rrrrs_v_1_z
+        axis_y_rrrrs_axes4_y = (
+        rrrrs_base_frame_yx*rrrrs_w_3_t_4 + rrrrs_base_frame_yz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_yy*rrrrs_w_3_t_5
+        )
+        axis_y_rrrrs_axes4_z = (
+        rrrrs_base_frame_zx*rrrrs_w_3_t_4 + rrrrs_base_frame_zz*rrrrs_w_3_t_6 -
+            rrrrs_base_frame_zy*rrrrs_w_3_t_5
+        )
+        rrrrs_w_3_in_axes4_x = -1.0/rrrrs_r_3_in_axes4_y
+        rrrrs_w_3_t_7 = (
+        rrrrs_w_3_in_axes4_x*(rrrrs_c_4*(rrrrs_c_3*rrrrs_x_2_in_axes2_y -
+            rrrrs_s_3*rrrrs_x_2_in_axes2_x) + rrrrs_s_4_t*(rrrrs_c_3*rrrrs_x_2_in_axes2_x +
+            rrrrs_s_3*rrrrs_x_2_in_axes2_y))
+        )
+        rrrrs_w_3_x = (
+        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_z -
+            axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_y)
+        )
+        rrrrs_w_3_y = (
+        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_z*axis_z_rrrrs_axes4_x -
+            axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_z)
+        )
+        rrrrs_w_3_z = (
+        rrrrs_w_3_in_axes4_x*(axis_y_rrrrs_axes4_x*axis_z_rrrrs_axes4_y -
+            axis_y_rrrrs_axes4_y*axis_z_rrrrs_axes4_x)
+        )
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrrs_pivot_size = abs(rrrrs_rho2_1)
+        rrrrs_pivot_size_2 = abs(rrrrs_rho2_3)
+        rrrrs_pivot_size_3 = abs(rrrrs_v_1_in_axes4_z)
+        rrrrs_pivot_size_4 = abs(rrrrs_r_3_in_axes4_y)
+        rrrrs_least_pivots = (
+        least(least(least(sqrt(inv_rrrrs_rho2_3_t*rrrrs_pivot_size_2),
+            inv_rrrrs_size*rrrrs_pivot_size_3), inv_rrrrs_size*rrrrs_pivot_size_4),
+            sqrt(inv_rrrrs_size_t_3*rrrrs_pivot_size))
+        )
         # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrrs_H_a_1_x = rrrrs_q_in_base_y*rrrrs_w_1_t_5 - rrrrs_q_in_base_z*rrrrs_w_1_t_4
-        rrrrs_H_a_1_y = rrrrs_q_in_base_z*rrrrs_w_1_t_3 - rrrrs_q_in_base_x*rrrrs_w_1_t_5
-        rrrrs_H_a_1_z = rrrrs_q_in_base_x*rrrrs_w_1_t_4 - rrrrs_q_in_base_y*rrrrs_w_1_t_3
-        # (rrrrs-w_3) reciprocal vector 2
-        rrrrs_w_3_t = (
-        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
-            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y)
-        )
-        rrrrs_w_3_t_2 = (
-        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
-            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z)
-        )
-        rrrrs_w_3_t_3 = (
-        inv_rrrrs_r_3_r0_y*(axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
-            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x)
-        )
+        rrrrs_H_a_1_x = rrrrs_q_y*rrrrs_w_1_z - rrrrs_q_z*rrrrs_w_1_y
+        rrrrs_H_a_1_y = rrrrs_q_z*rrrrs_w_1_x - rrrrs_q_x*rrrrs_w_1_z
+        rrrrs_H_a_1_z = rrrrs_q_x*rrrrs_w_1_y - rrrrs_q_y*rrrrs_w_1_x
         # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
-        rrrrs_H_a_3_x = rrrrs_q_in_base_z*rrrrs_w_3_t_2 - rrrrs_q_in_base_y*rrrrs_w_3_t_3
-        rrrrs_H_a_3_y = rrrrs_q_in_base_x*rrrrs_w_3_t_3 - rrrrs_q_in_base_z*rrrrs_w_3_t
-        rrrrs_H_a_3_z = rrrrs_q_in_base_y*rrrrs_w_3_t - rrrrs_q_in_base_x*rrrrs_w_3_t_2
+        rrrrs_H_a_3_x = rrrrs_q_y*rrrrs_w_3_z - rrrrs_q_z*rrrrs_w_3_y
+        rrrrs_H_a_3_y = rrrrs_q_z*rrrrs_w_3_x - rrrrs_q_x*rrrrs_w_3_z
+        rrrrs_H_a_3_z = rrrrs_q_x*rrrrs_w_3_y - rrrrs_q_y*rrrrs_w_3_x
         # (spread) rms distance of the platform points from their centroid
-        rrrrs_spread_t = b_c_x - rrrrs_platform_point_x
-        rrrrs_spread_t_2 = b_c_y - rrrrs_platform_point_y
-        rrrrs_spread_t_3 = b_c_z - rrrrs_platform_point_z
+        rrrrs_spread_t = b_c_in_platform_x - rrrrs_platform_point_x
+        rrrrs_spread_t_2 = b_c_in_platform_y - rrrrs_platform_point_y
+        rrrrs_spread_t_3 = b_c_in_platform_z - rrrrs_platform_point_z
         rrrrs_spread_t_4 = (
         rrrrs_spread_t*rrrrs_spread_t + rrrrs_spread_t_2*rrrrs_spread_t_2 +
             rrrrs_spread_t_3*rrrrs_spread_t_3
         )
-        # (rrrrs-rho2_1) squared amplitude
-        rrrrs_pivot_size = abs(rrrrs_rho2_1)
-        # (rrrrs-rho2_3) squared amplitude
-        rrrrs_pivot_size_2 = abs(rrrrs_rho2_3)
-        # (rrrrs-w_1) reciprocal vector 1
-        rrrrs_pivot_size_3 = abs(rrrrs_v_1_z)
-        rrrrs_pivot_size_4 = abs(rrrrs_r_3_r0_y)
-        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrrs_least_pivots = (
-        least(least(least(sqrt(inv_rrrrs_rho2_3_t_4*rrrrs_pivot_size_2),
-            inv_rrrrs_size*rrrrs_pivot_size_3), inv_rrrrs_size*rrrrs_pivot_size_4),
-            sqrt(inv_rrrrs_size_t_4*rrrrs_pivot_size))
-        )
         clear = (
         clear & m.every(leg, (abs(rrrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrrs_size_t_3) &
-            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) & (abs(rrrrs_v_1_z) >
-            _TOLERANCE * rrrrs_size) & (abs(-rrrrs_r_3_r0_y) > _TOLERANCE * rrrrs_size))
+            (abs(rrrrs_rho2_3) > _TOLERANCE * _TOLERANCE * rrrrs_rho2_3_t) &
+            (abs(rrrrs_v_1_in_axes4_z) > _TOLERANCE * rrrrs_size) & (abs(rrrrs_r_3_in_axes4_y) >
+            _TOLERANCE * rrrrs_size))
         )
         reached = reached & m.every(leg, (rrrrs_disc_3 >= 0.0))
         sums = m.added(sums, leg, (
         rrrrs_spread_t_4,
         ))
-        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_t_3
-        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_t_4
-        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_t_5
+        # (rrrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrrs[0][leg]] = rrrrs_w_1_x
+        out_H[_H_rrrrs[1][leg]] = rrrrs_w_1_y
+        out_H[_H_rrrrs[2][leg]] = rrrrs_w_1_z
+        # (rrrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[3][leg]] = rrrrs_H_a_1_x
         out_H[_H_rrrrs[4][leg]] = rrrrs_H_a_1_y
         out_H[_H_rrrrs[5][leg]] = rrrrs_H_a_1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_rrrrs[6][leg]] = 1.0
-        out_H[_H_rrrrs[7][leg]] = -rrrrs_w_3_t
-        out_H[_H_rrrrs[8][leg]] = -rrrrs_w_3_t_2
-        out_H[_H_rrrrs[9][leg]] = -rrrrs_w_3_t_3
+        # (rrrrs-w_3) reciprocal vector 2
+        out_H[_H_rrrrs[7][leg]] = rrrrs_w_3_x
+        out_H[_H_rrrrs[8][leg]] = rrrrs_w_3_y
+        out_H[_H_rrrrs[9][leg]] = rrrrs_w_3_z
+        # (rrrrs-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_rrrrs[10][leg]] = rrrrs_H_a_3_x
         out_H[_H_rrrrs[11][leg]] = rrrrs_H_a_3_y
         out_H[_H_rrrrs[12][leg]] = rrrrs_H_a_3_z
-        out_H[_H_rrrrs[13][leg]] = -rrrrs_dy_2_qdd_3
+        # (rrrrs-w_3) reciprocal vector 2
+        out_H[_H_rrrrs[13][leg]] = rrrrs_w_3_t_7
+        # (rrrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rrrrs[0][leg]] = rrrrs_least_pivots
         out_reach[_reach_rrrrs[0][leg]] = rrrrs_disc_3
-    total_rrrrs, = sums
+    spread_rrrrs, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrrs_rho2_2_t_4, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
+        inv_rrrs_rho2_2_t, inv_rrrs_size, inv_rrrs_size_t, inv_rrrs_size_t_2, inv_rrrs_size_t_3,
             rrrs_Kd_2_t, rrrs_Kd_2_t_2, rrrs_base_frame_xx, rrrs_base_frame_xy,
             rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
             rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
@@ -9462,18 +10096,18 @@ def _run_condition(m, X):
             rrrs_size, rrrs_size_t_3,
         ) = k
         # (rrrs-S) from the base point to the connection point
-        rrrs_q_in_base_x = (
+        rrrs_q_x = (
         R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_y = (
+        rrrs_q_y = (
         R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
         )
-        rrrs_q_in_base_z = (
+        rrrs_q_z = (
         R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
         )
-        rrrs_S_x = rrrs_q_in_base_x + t_x - rrrs_base_point_x
-        rrrs_S_y = rrrs_q_in_base_y + t_y - rrrs_base_point_y
-        rrrs_S_z = rrrs_q_in_base_z + t_z - rrrs_base_point_z
+        rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
+        rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
+        rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
         # (rrrs-px_1) component along the reference direction
         rrrs_px_1 = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
@@ -9486,151 +10120,154 @@ def _run_condition(m, X):
         rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
+        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
+        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
         # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_t = (
+        rrrs_xi_1_in_axes1_z = (
         rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_z = rrrs_xi_1_t - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_z*rrrs_x_2_z
+        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
         rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
+        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
+        rrrs_c_2_t = -1.0/rrrs_rho2_2
+        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
+        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
-        rrrs_x_3_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        rrrs_x_3_in_axes2_x = (
+        inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+        )
         # (rrrs-c_3) cosine of the angle of joint 3 from its reference direction
-        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_x
+        rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x
         # (rrrs-s_3) sine of the angle of joint 3 from its reference direction
-        rrrs_s_3 = (
+        rrrs_s_3_t = (
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
-        # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
-        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 + rrrs_Ks_2*rrrs_root_2)
-        # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_r2_x = rrrs_c_2*rrrs_s_3 - rrrs_c_3*rrrs_s_2
-        rrrs_e_1_r2_y = -rrrs_c_2*rrrs_c_3 - rrrs_s_2*rrrs_s_3
-        # (rrrs-r_1) from joint 1 to the connection point, along the links
-        rrrs_r_1_r1_x = rrrs_c_2*rrrs_root_1 - rrrs_s_2*rrrs_xi_1_t
-        rrrs_r_1_r1_y = -rrrs_c_2*rrrs_xi_1_t - rrrs_root_1*rrrs_s_2
-        # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_v_1_z = (
-        rrrs_e_1_r2_x*(rrrs_c_3*rrrs_r_1_r1_y + rrrs_r_1_r1_x*rrrs_s_3) -
-            rrrs_e_1_r2_y*(rrrs_c_3*rrrs_r_1_r1_x - rrrs_r_1_r1_y*rrrs_s_3)
+        rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
+        rrrs_r_2_in_axes3_y = (
+        rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
         )
-        # (rrrs-r_2) from joint 2 to the connection point, along the links
-        rrrs_r_2_r0_y = rrrs_r_2_x*rrrs_s_3 - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3
-        # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
-        # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
+        # (rrrs-v_1) velocity of the connection point per rate of joint 1
+        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_in_axes3_z = (
+        rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
+            rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
+        )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*rrrs_s_1 - rrrs_base_frame_xy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*rrrs_s_1 - rrrs_base_frame_yy*rrrs_c_1
-        axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*rrrs_s_1 - rrrs_base_frame_zy*rrrs_c_1
-        rrrs_w_1_t = rrrs_e_1_r2_x*rrrs_s_1
-        rrrs_w_1_t_2 = rrrs_c_1*rrrs_e_1_r2_x
-        axis_y_rrrs_axes3_in_base_x = (
-        rrrs_base_frame_xx*rrrs_e_1_r2_y + rrrs_base_frame_xy*rrrs_w_1_t +
-            rrrs_base_frame_xz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_y = (
-        rrrs_base_frame_yx*rrrs_e_1_r2_y + rrrs_base_frame_yy*rrrs_w_1_t +
-            rrrs_base_frame_yz*rrrs_w_1_t_2
-        )
-        axis_y_rrrs_axes3_in_base_z = (
-        rrrs_base_frame_zx*rrrs_e_1_r2_y + rrrs_base_frame_zy*rrrs_w_1_t +
-            rrrs_base_frame_zz*rrrs_w_1_t_2
-        )
-        inv_rrrs_v_1_z = 1.0/rrrs_v_1_z
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
+        rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
+        rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
+        rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        inv_rrrs_r_2_r0_y = 1.0/rrrs_r_2_r0_y
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_w_1_t_3 = axis_z_rrrs_axes3_in_base_x*inv_rrrs_v_1_z
-        rrrs_w_1_t_4 = axis_z_rrrs_axes3_in_base_y*inv_rrrs_v_1_z
-        rrrs_w_1_t_5 = axis_z_rrrs_axes3_in_base_z*inv_rrrs_v_1_z
+        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
+        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_y_rrrs_axes3_x = (
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+            rrrs_base_frame_xz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_y = (
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+            rrrs_base_frame_yz*rrrs_w_2_t_2
+        )
+        axis_y_rrrs_axes3_z = (
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+            rrrs_base_frame_zz*rrrs_w_2_t_2
+        )
+        rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
+        rrrs_w_2_x = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y)
+        )
+        rrrs_w_2_y = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z)
+        )
+        rrrs_w_2_z = (
+        rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x)
+        )
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrrs_pivot_size = abs(rrrs_rho2_1)
+        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
+        rrrs_pivot_size_3 = abs(rrrs_v_1_in_axes3_z)
+        rrrs_pivot_size_4 = abs(rrrs_r_2_in_axes3_y)
+        rrrs_least_pivots = (
+        least(least(least(sqrt(inv_rrrs_rho2_2_t*rrrs_pivot_size_2),
+            inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
+            sqrt(inv_rrrs_size_t_3*rrrs_pivot_size))
+        )
         # (rrrs-H_a_1) moment of the column's unit force about the platform origin
-        rrrs_H_a_1_x = rrrs_q_in_base_y*rrrs_w_1_t_5 - rrrs_q_in_base_z*rrrs_w_1_t_4
-        rrrs_H_a_1_y = rrrs_q_in_base_z*rrrs_w_1_t_3 - rrrs_q_in_base_x*rrrs_w_1_t_5
-        rrrs_H_a_1_z = rrrs_q_in_base_x*rrrs_w_1_t_4 - rrrs_q_in_base_y*rrrs_w_1_t_3
-        # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
-            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
-        )
-        rrrs_w_2_t_2 = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
-            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
-        )
-        rrrs_w_2_t_3 = (
-        inv_rrrs_r_2_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
-            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
-        )
+        rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y
+        rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z
+        rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x
         # (rrrs-H_a_2) moment of the column's unit force about the platform origin
-        rrrs_H_a_2_x = rrrs_q_in_base_z*rrrs_w_2_t_2 - rrrs_q_in_base_y*rrrs_w_2_t_3
-        rrrs_H_a_2_y = rrrs_q_in_base_x*rrrs_w_2_t_3 - rrrs_q_in_base_z*rrrs_w_2_t
-        rrrs_H_a_2_z = rrrs_q_in_base_y*rrrs_w_2_t - rrrs_q_in_base_x*rrrs_w_2_t_2
+        rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y
+        rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z
+        rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x
         # (spread) rms distance of the platform points from their centroid
-        rrrs_spread_t = b_c_x - rrrs_platform_point_x
-        rrrs_spread_t_2 = b_c_y - rrrs_platform_point_y
-        rrrs_spread_t_3 = b_c_z - rrrs_platform_point_z
+        rrrs_spread_t = b_c_in_platform_x - rrrs_platform_point_x
+        rrrs_spread_t_2 = b_c_in_platform_y - rrrs_platform_point_y
+        rrrs_spread_t_3 = b_c_in_platform_z - rrrs_platform_point_z
         rrrs_spread_t_4 = (
         rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2 +
             rrrs_spread_t_3*rrrs_spread_t_3
         )
-        # (rrrs-rho2_1) squared amplitude
-        rrrs_pivot_size = abs(rrrs_rho2_1)
-        # (rrrs-rho2_2) squared amplitude
-        rrrs_pivot_size_2 = abs(rrrs_rho2_2)
-        # (rrrs-w_1) reciprocal vector 1
-        rrrs_pivot_size_3 = abs(rrrs_v_1_z)
-        rrrs_pivot_size_4 = abs(rrrs_r_2_r0_y)
-        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrrs_least_pivots = (
-        least(least(least(sqrt(inv_rrrs_rho2_2_t_4*rrrs_pivot_size_2),
-            inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
-            sqrt(inv_rrrs_size_t_3*rrrs_pivot_size))
-        )
         clear = (
         clear & m.every(leg, (abs(rrrs_rho2_1) > _TOLERANCE * _TOLERANCE * rrrs_size_t_3) &
-            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) & (abs(rrrs_v_1_z) >
-            _TOLERANCE * rrrs_size) & (abs(-rrrs_r_2_r0_y) > _TOLERANCE * rrrs_size))
+            (abs(rrrs_rho2_2) > _TOLERANCE * _TOLERANCE * rrrs_rho2_2_t) &
+            (abs(rrrs_v_1_in_axes3_z) > _TOLERANCE * rrrs_size) & (abs(rrrs_r_2_in_axes3_y) >
+            _TOLERANCE * rrrs_size))
         )
         reached = reached & m.every(leg, (rrrs_disc_2 >= 0.0))
         sums = m.added(sums, leg, (
         rrrs_spread_t_4,
         ))
-        out_H[_H_rrrs[0][leg]] = rrrs_w_1_t_3
-        out_H[_H_rrrs[1][leg]] = rrrs_w_1_t_4
-        out_H[_H_rrrs[2][leg]] = rrrs_w_1_t_5
+        # (rrrs-w_1) reciprocal vector 1
+        out_H[_H_rrrs[0][leg]] = rrrs_w_1_x
+        out_H[_H_rrrs[1][leg]] = rrrs_w_1_y
+        out_H[_H_rrrs[2][leg]] = rrrs_w_1_z
+        # (rrrs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[3][leg]] = rrrs_H_a_1_x
         out_H[_H_rrrs[4][leg]] = rrrs_H_a_1_y
         out_H[_H_rrrs[5][leg]] = rrrs_H_a_1_z
-        out_H[_H_rrrs[6][leg]] = -rrrs_w_2_t
-        out_H[_H_rrrs[7][leg]] = -rrrs_w_2_t_2
-        out_H[_H_rrrs[8][leg]] = -rrrs_w_2_t_3
+        # (rrrs-w_2) reciprocal vector 2
+        out_H[_H_rrrs[6][leg]] = rrrs_w_2_x
+        out_H[_H_rrrs[7][leg]] = rrrs_w_2_y
+        out_H[_H_rrrs[8][leg]] = rrrs_w_2_z
+        # (rrrs-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rrrs[9][leg]] = rrrs_H_a_2_x
         out_H[_H_rrrs[10][leg]] = rrrs_H_a_2_y
         out_H[_H_rrrs[11][leg]] = rrrs_H_a_2_z
+        # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rrrs[0][leg]] = rrrs_least_pivots
         out_reach[_reach_rrrs[0][leg]] = rrrs_disc_2
-    total_rrrs, = sums
+    spread_rrrs, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = sqrt(0.3333333333333333*total_rrrrs + 0.3333333333333333*total_rrrs)
+    spread = sqrt(0.3333333333333333*spread_rrrrs + 0.3333333333333333*spread_rrrs)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

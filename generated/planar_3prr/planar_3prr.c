@@ -492,14 +492,14 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_prr = 0;
-    real total_prr_x = 0;
-    real total_prr_y = 0;
-    real total_prr_xx = 0;
-    real total_prr_zz = 0;
-    real total_prr_x_2 = 0;
-    real total_prr_y_2 = 0;
-    real total_prr_2 = 0;
+    real m_star_prr = 0;
+    real h_star_prr_in_platform_x = 0;
+    real h_star_prr_in_platform_y = 0;
+    real J_star_prr_in_platform_xx = 0;
+    real J_star_prr_in_platform_zz = 0;
+    real b_c_prr_in_platform_x = 0;
+    real b_c_prr_in_platform_y = 0;
+    real legs_size_prr = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -539,22 +539,32 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         const real prr_link2_inertia_zz = params->prr_link2_inertia[own][2][2];
         static const signed char signs_prr_branch_1[] = {-1, -1, -1};
         const real prr_branch_1 = signs_prr_branch_1[own];
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = 1/prr_disc_1_t;
-        /* (prr-rho_tip_2) connection point to the centre of mass of link 2 */
-        const real prr_rho_tip_2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x;
-        /* (prr-h_2) first moment of link 2 about the connection point */
-        const real prr_h_2_x = prr_link2_mass*prr_rho_tip_2_x;
-        const real prr_h_2_y = prr_link2_centre_of_mass_y*prr_link2_mass;
         /* (prr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real prr_size_t = R(2.5e-07) + prr_disc_1_t;
-        const real prr_size = root(prr_size_t);
+        const real prr_size_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+        const real prr_size_t_2 = R(2.5e-07) + prr_size_t;
+        const real prr_size = root(prr_size_t_2);
+        /* (prr-h_1) first moment of link 1 about the origin of link 1 */
+        const real prr_h_1_in_spec0_x = prr_link1_centre_of_mass_x*prr_link1_mass;
+        const real prr_h_1_in_spec0_y = prr_link1_centre_of_mass_y*prr_link1_mass;
+        /* (prr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real prr_rho_tip_2_in_spec2_x = prr_link2_centre_of_mass_x -
+            prr_platform_joint_offset_x;
+        /* (prr-h_2) first moment of link 2 about the connection point */
+        const real prr_h_2_in_spec2_x = prr_link2_mass*prr_rho_tip_2_in_spec2_x;
+        const real prr_h_2_in_spec2_y = prr_link2_centre_of_mass_y*prr_link2_mass;
         /* (prr-J_2) inertia tensor of link 2 about the connection point */
         const real prr_J_2_t = prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y +
-            prr_rho_tip_2_x*prr_rho_tip_2_x;
-        const real prr_J_2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass;
+            prr_rho_tip_2_in_spec2_x*prr_rho_tip_2_in_spec2_x;
+        const real prr_J_2_in_spec2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass;
+        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prr_size_t = 1/prr_size_t;
+        /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prr_g_in_axes0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
+        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prr_g_in_axes0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
+        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_prr_size = 1/prr_size;
         /* (h_star) first moment about the platform origin */
         const real prr_h_star_t = prr_link2_mass*prr_platform_point_x;
         const real prr_h_star_t_2 = prr_link2_mass*prr_platform_point_y;
@@ -563,24 +573,15 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         const real prr_J_star_t_2 = prr_J_star_t + prr_platform_point_x*prr_platform_point_x;
         const real prr_J_star_t_3 = prr_J_star_t*prr_link2_mass;
         const real prr_J_star_t_4 = prr_J_star_t_2*prr_link2_mass;
-        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prr_g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
-        const real prr_g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
-        /* (prr-h_1) first moment of link 1 about the origin of link 1 */
-        const real prr_h_1_x = prr_link1_centre_of_mass_x*prr_link1_mass;
-        const real prr_h_1_y = prr_link1_centre_of_mass_y*prr_link1_mass;
         /* (potential) potential energy */
-        const real prr_b_r0_x = prr_base_frame_xx*prr_base_point_x +
+        const real prr_b_in_axes0_x = prr_base_frame_xx*prr_base_point_x +
             prr_base_frame_yx*prr_base_point_y;
         const real prr_potential_t = prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
             prr_base_frame_yy*prr_base_point_y);
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_size = 1/prr_size;
-        model->inv_prr_disc_1_t_5[leg] = inv_prr_disc_1_t_5;
         model->inv_prr_size[leg] = inv_prr_size;
-        model->prr_J_2_zz[leg] = prr_J_2_zz;
-        model->prr_b_r0_x[leg] = prr_b_r0_x;
+        model->inv_prr_size_t[leg] = inv_prr_size_t;
+        model->prr_J_2_in_spec2_zz[leg] = prr_J_2_in_spec2_zz;
+        model->prr_b_in_axes0_x[leg] = prr_b_in_axes0_x;
         model->prr_base_frame_xx[leg] = prr_base_frame_xx;
         model->prr_base_frame_xy[leg] = prr_base_frame_xy;
         model->prr_base_frame_yx[leg] = prr_base_frame_yx;
@@ -588,13 +589,12 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         model->prr_base_point_x[leg] = prr_base_point_x;
         model->prr_base_point_y[leg] = prr_base_point_y;
         model->prr_branch_1[leg] = prr_branch_1;
-        model->prr_disc_1_t[leg] = prr_disc_1_t;
-        model->prr_g_r0_x[leg] = prr_g_r0_x;
-        model->prr_g_r0_y[leg] = prr_g_r0_y;
-        model->prr_h_1_x[leg] = prr_h_1_x;
-        model->prr_h_1_y[leg] = prr_h_1_y;
-        model->prr_h_2_x[leg] = prr_h_2_x;
-        model->prr_h_2_y[leg] = prr_h_2_y;
+        model->prr_g_in_axes0_x[leg] = prr_g_in_axes0_x;
+        model->prr_g_in_axes0_y[leg] = prr_g_in_axes0_y;
+        model->prr_h_1_in_spec0_x[leg] = prr_h_1_in_spec0_x;
+        model->prr_h_1_in_spec0_y[leg] = prr_h_1_in_spec0_y;
+        model->prr_h_2_in_spec2_x[leg] = prr_h_2_in_spec2_x;
+        model->prr_h_2_in_spec2_y[leg] = prr_h_2_in_spec2_y;
         model->prr_link1_mass[leg] = prr_link1_mass;
         model->prr_link2_mass[leg] = prr_link2_mass;
         model->prr_platform_joint_offset_x[leg] = prr_platform_joint_offset_x;
@@ -602,39 +602,41 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         model->prr_platform_point_y[leg] = prr_platform_point_y;
         model->prr_potential_t[leg] = prr_potential_t;
         model->prr_size[leg] = prr_size;
-        total_prr += leg < 3 ? prr_link2_mass : 0;
-        total_prr_x += leg < 3 ? prr_h_star_t : 0;
-        total_prr_y += leg < 3 ? prr_h_star_t_2 : 0;
-        total_prr_xx += leg < 3 ? prr_J_star_t_3 : 0;
-        total_prr_zz += leg < 3 ? prr_J_star_t_4 : 0;
-        total_prr_x_2 += leg < 3 ? prr_platform_point_x : 0;
-        total_prr_y_2 += leg < 3 ? prr_platform_point_y : 0;
-        total_prr_2 += leg < 3 ? prr_size_t : 0;
+        model->prr_size_t[leg] = prr_size_t;
+        m_star_prr += leg < 3 ? prr_link2_mass : 0;
+        h_star_prr_in_platform_x += leg < 3 ? prr_h_star_t : 0;
+        h_star_prr_in_platform_y += leg < 3 ? prr_h_star_t_2 : 0;
+        J_star_prr_in_platform_xx += leg < 3 ? prr_J_star_t_3 : 0;
+        J_star_prr_in_platform_zz += leg < 3 ? prr_J_star_t_4 : 0;
+        b_c_prr_in_platform_x += leg < 3 ? prr_platform_point_x : 0;
+        b_c_prr_in_platform_y += leg < 3 ? prr_platform_point_y : 0;
+        legs_size_prr += leg < 3 ? prr_size_t_2 : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_prr;
+    const real m_star = m_star_prr + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_prr_x;
-    const real h_star_y = h_star_t_2 + total_prr_y;
+    const real h_star_in_platform_x = h_star_prr_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_prr_in_platform_y + h_star_t_2;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = J_star_t_3 + total_prr_xx;
-    const real J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_prr_zz;
-    const real J_star_t_6 = J_star_t_5 - J_star_xx;
+    const real J_star_in_platform_xx = J_star_prr_in_platform_xx + J_star_t_3;
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_prr_in_platform_zz - J_star_t_4 -
+        platform_inertia_zz;
+    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_prr_x_2;
-    const real b_c_y = R(0.3333333333333333)*total_prr_y_2;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prr_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prr_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_prr_2);
-    model->J_star_t_6 = J_star_t_6;
+    const real legs_size = root(legs_size_prr)*spread_t;
+    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1085,22 +1087,22 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1108,11 +1110,11 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[4*w + k] = t_dot_x;
         s[5*w + k] = t_dot_y;
         s[6*w + k] = omega_z;
-        s[7*w + k] = h_star_in_base_x;
-        s[8*w + k] = h_star_in_base_y;
+        s[7*w + k] = h_star_x;
+        s[8*w + k] = h_star_y;
         s[9*w + k] = Z_p_x;
         s[10*w + k] = Z_p_y;
-        s[11*w + k] = Z_q_t;
+        s[11*w + k] = Z_q_z;
     }
 }
 
@@ -1127,168 +1129,170 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
-        const real prr_w_2_t = inv_prr_v_2_t_2*prr_s_2;
-        const real prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
-        /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz;
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2;
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t;
-        /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t;
-        const real prr__r0_y_2 = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
-        /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prr_d_c_xx = prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass -
-            prr_d_Gamma_1_t*prr_s_2) - prr_h_2_y*prr_w_2_t;
-        const real prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 -
-            prr__r0_x*prr__r0_y_2;
-        /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prr_Q_t = prr_d_c_xx + prr__r0_y*prr__r0_y_2 + prr_d_Gamma_2_y*prr_w_2_t_2 +
-            prr_h_2_x*prr_w_2_t_2;
-        const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-        const real prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 -
-            axis_y_prr_axes2_in_base_y*prr_d_c_xy;
-        const real prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy +
-            axis_y_prr_axes2_in_base_y*prr_Q_t_2;
-        const real prr_Q_t_5 = 2*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx;
-        const real prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 +
-            axis_y_prr_axes2_in_base_y*prr_Q_t_3;
-        const real prr_Q_t_7 = 2*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx;
-        /* (M_ta) coupling block of M */
-        const real prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x;
-        const real prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
+        /* (prr-w_1) reciprocal vector 1 */
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
+        /* (prr-w_2) reciprocal vector 2 */
+        const real prr_w_2_t = prr_s_2*prr_w_1_t;
+        const real prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
-        /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_t = omega_z*prr_S_dot_t_2;
-        const real prr_u_1_t_2 = omega_z*prr_S_dot_t;
         /* (prr-W_2) centripetal tensor of link 2 */
-        const real prr_W_2_t = prr_qd_2*prr_qd_2;
+        const real prr_W_2_t = prr_qd_2_t*prr_qd_2_t;
         /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_tip_x = axis_y_prr_axes2_in_base_x*prr_u_1_t_2 -
-            axis_y_prr_axes2_in_base_y*prr_u_1_t;
-        const real prr_u_1_tip_y = -axis_y_prr_axes2_in_base_x*prr_u_1_t -
-            axis_y_prr_axes2_in_base_y*prr_u_1_t_2;
+        const real prr_u_1_x = -omega_z*prr_S_dot_t_2;
+        const real prr_u_1_t = omega_z*prr_S_dot_t;
+        const real prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x +
+            axis_y_prr_axes2_x*prr_u_1_t;
+        const real prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x -
+            axis_x_prr_axes2_x*prr_u_1_t;
         /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y);
-        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2;
-        const real prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2;
-        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o -
-            prr_acc_2_o_x*prr_h_2_y;
+        const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x +
+            prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t;
+        /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real prr_B_2_o_in_axes2_xy = prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y +
+            prr_rel_o_in_axes2_x*prr_s_2);
         /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
-        const real prr_acc_1_o_x = -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t -
-            prr_s_2*prr_u_1_tip_y;
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x +
+            prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - prr_s_2*prr_u_1_in_axes2_y;
         /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
-        const real prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass;
-        /* (prr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t);
+        const real prr_link1_mass = m->prr_link1_mass[i];
+        const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
+        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
+            prr_g_in_axes0_y*prr_s_2;
+        const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
+            prr_c_2*prr_g_in_axes0_y;
+        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
+        /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t;
+        const real prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2;
+        const real prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t;
+        /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
+        /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
+            prr_h_2_in_spec2_y*prr_w_2_t - prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass +
+            prr_d_Gamma_1_t*prr_s_2);
+        const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
+            prr_h_2_in_spec2_y*prr_w_2_in_axes2_y - prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x;
         /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real prr_c_o_x = prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x -
-            prr_h_2_y*prr_qdd_2_o;
-        const real prr_c_o_y = prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o -
-            prr_G_o_t*prr_c_2;
+        const real prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z -
+            prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x);
+        const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x;
+        const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x +
+            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2;
+        /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real prr_Q_t = prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_y +
+            prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y;
+        const real prr_Q_t_2 = R(0.5)*prr_Q_t;
+        const real prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 -
+            axis_x_prr_axes2_x*prr_d_c_in_axes2_xy;
+        const real prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 +
+            axis_y_prr_axes2_x*prr_d_c_in_axes2_xy;
+        const real prr_Q_xx = 2*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
+        const real prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4;
+        const real prr_Q_yy = 2*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
         /* (prr-U) velocity and gravity terms of the leg force */
-        const real prr_U_in_base_x = -axis_y_prr_axes2_in_base_x*prr_c_o_y -
-            axis_y_prr_axes2_in_base_y*prr_c_o_x;
-        const real prr_U_in_base_y = axis_y_prr_axes2_in_base_x*prr_c_o_x -
-            axis_y_prr_axes2_in_base_y*prr_c_o_y;
+        const real prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+            axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+        const real prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+            axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
+        /* (M_ta) coupling block of M */
+        const real prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y;
+        const real prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y;
+        /* (M_aa) rotational block of M */
+        const real prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y;
         /* (Z_a) rotational part of Z */
-        const real prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
+        const real prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y -
-            prr_q_in_base_y*prr_w_1_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_t_5 : prr_Q_t_5;  /* total_prr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_t_6 : prr_Q_t_6;  /* total_prr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_t_7 : prr_Q_t_7;  /* total_prr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* total_prr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* total_prr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* total_prr_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + prr_U_in_base_x : prr_U_in_base_x;  /* total_prr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + prr_U_in_base_y : prr_U_in_base_y;  /* total_prr_y */
-        terms[8*count + k] = add ? terms[8*count + k] + prr_Z_a_t : prr_Z_a_t;  /* total_prr_z */
-        o[0*count + k] = prr_w_1_in_base_x;
-        o[1*count + k] = prr_w_1_in_base_y;
+        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_xx : prr_Q_xx;  /* M_tt_prr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_xy : prr_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_yy : prr_Q_yy;  /* M_tt_prr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* M_ta_prr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* M_ta_prr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* M_aa_prr_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + prr_U_x : prr_U_x;  /* Z_t_prr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + prr_U_y : prr_U_y;  /* Z_t_prr_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + prr_Z_a_t : prr_Z_a_t;  /* Z_a_prr_z */
+        /* (prr-w_1) reciprocal vector 1 */
+        o[0*count + k] = prr_w_1_x;
+        o[1*count + k] = prr_w_1_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
-        o[5*count + k] = prr_w_1_in_base_x + (prr_w_1_in_base_y + prr_H_a_1_z);
+        o[5*count + k] = prr_w_1_x + (prr_w_1_y + prr_H_a_1_z);
         const real prr_size = m->prr_size[i];
         o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -1310,48 +1314,53 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_prr_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_prr_xx = sums[0*w + k];
-        const real M_tt_xx = m_star + total_prr_xx;
-        const real total_prr_yy = sums[2*w + k];
-        const real M_tt_yy = m_star + total_prr_yy;
+        const real M_tt_xx = M_tt_prr_xx + m_star;
+        const real M_tt_prr_yy = sums[2*w + k];
+        const real M_tt_yy = M_tt_prr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[8*w + k];
-        const real total_prr_xz = sums[3*w + k];
-        const real M_ta_xz = -h_star_in_base_y - total_prr_xz;
-        const real h_star_in_base_x = s[7*w + k];
-        const real total_prr_yz = sums[4*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_prr_yz;
+        const real M_ta_prr_xz = sums[3*w + k];
+        const real h_star_y = s[8*w + k];
+        const real M_ta_xz = M_ta_prr_xz - h_star_y;
+        const real M_ta_prr_yz = sums[4*w + k];
+        const real h_star_x = s[7*w + k];
+        const real M_ta_yz = M_ta_prr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_prr_zz = sums[5*w + k];
-        const real M_aa_zz = total_prr_zz - J_star_t_6;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_prr_zz = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prr_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[9*w + k];
-        const real total_prr_x = sums[6*w + k];
-        const real Z_t_x = Z_p_x + total_prr_x;
+        const real Z_t_prr_x = sums[6*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prr_x;
         const real Z_p_y = s[10*w + k];
-        const real total_prr_y = sums[7*w + k];
-        const real Z_t_y = Z_p_y + total_prr_y;
+        const real Z_t_prr_y = sums[7*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[11*w + k];
-        const real total_prr_z = sums[8*w + k];
-        const real Z_a_z = total_prr_z - Z_q_t;
+        const real Z_a_prr_z = sums[8*w + k];
+        const real Z_q_z = s[11*w + k];
+        const real Z_a_z = Z_a_prr_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_prr_xy = sums[1*w + k];
-        M[1*w + k] = total_prr_xy;
-        M[3*w + k] = total_prr_xy;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_xz;
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[8*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
-        t->total[k] += ((M_tt_xx + total_prr_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) +
-            (Z_t_x + (Z_t_y + Z_a_z)));
+        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
+            + (Z_t_y + Z_a_z)));
     }
 }
 
@@ -1396,16 +1405,16 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
-        s[4*w + k] = h_star_in_base_x;
-        s[5*w + k] = h_star_in_base_y;
+        s[4*w + k] = h_star_x;
+        s[5*w + k] = h_star_y;
     }
 }
 
@@ -1420,94 +1429,93 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
-        const real prr_w_2_t = inv_prr_v_2_t_2*prr_s_2;
-        const real prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2;
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
+        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+        /* (prr-w_2) reciprocal vector 2 */
+        const real prr_w_2_t = prr_s_2*prr_w_1_t;
+        const real prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t;
         /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz;
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2;
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t;
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t;
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2;
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t;
         /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
            inertia and weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t;
-        const real prr__r0_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
+        const real prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
         /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real prr_d_c_xx = prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass -
-            prr_d_Gamma_1_t*prr_s_2) - prr_h_2_y*prr_w_2_t;
-        const real prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 -
-            prr__r0_x*prr__r0_y;
+        const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
+            prr_h_2_in_spec2_y*prr_w_2_t - prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass +
+            prr_d_Gamma_1_t*prr_s_2);
+        const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
+            prr_h_2_in_spec2_y*prr_w_2_in_axes2_y - prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x;
         /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prr_Q_t = prr_d_c_xx + prr__r0_y*(prr_c_2*prr_w_1_t - prr_s_2) +
-            prr_d_Gamma_2_y*prr_w_2_t_2 + prr_h_2_x*prr_w_2_t_2;
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_Q_t = prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*(prr_c_2*prr_w_1_t_2 -
+            prr_s_2) + prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y +
+            prr_h_2_in_spec2_x*prr_w_2_in_axes2_y;
         const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-        const real prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 -
-            axis_y_prr_axes2_in_base_y*prr_d_c_xy;
-        const real prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy +
-            axis_y_prr_axes2_in_base_y*prr_Q_t_2;
-        const real prr_Q_t_5 = 2*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx;
-        const real prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 +
-            axis_y_prr_axes2_in_base_y*prr_Q_t_3;
-        const real prr_Q_t_7 = 2*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx;
+        const real prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 -
+            axis_x_prr_axes2_x*prr_d_c_in_axes2_xy;
+        const real prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 +
+            axis_y_prr_axes2_x*prr_d_c_in_axes2_xy;
+        const real prr_Q_xx = 2*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
+        const real prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4;
+        const real prr_Q_yy = 2*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
         /* (M_ta) coupling block of M */
-        const real prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x;
-        const real prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x;
+        const real prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y;
+        const real prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y;
         /* (M_aa) rotational block of M */
-        const real prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_t_5 : prr_Q_t_5;  /* total_prr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_t_6 : prr_Q_t_6;  /* total_prr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_t_7 : prr_Q_t_7;  /* total_prr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* total_prr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* total_prr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* total_prr_zz */
+        const real prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_xx : prr_Q_xx;  /* M_tt_prr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_xy : prr_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_yy : prr_Q_yy;  /* M_tt_prr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* M_ta_prr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* M_ta_prr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* M_aa_prr_zz */
         const real prr_size = m->prr_size[i];
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[1*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -1524,33 +1532,36 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_prr_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_prr_xx = sums[0*w + k];
-        const real M_tt_xx = m_star + total_prr_xx;
-        const real total_prr_yy = sums[2*w + k];
-        const real M_tt_yy = m_star + total_prr_yy;
+        const real M_tt_xx = M_tt_prr_xx + m_star;
+        const real M_tt_prr_yy = sums[2*w + k];
+        const real M_tt_yy = M_tt_prr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[5*w + k];
-        const real total_prr_xz = sums[3*w + k];
-        const real M_ta_xz = -h_star_in_base_y - total_prr_xz;
-        const real h_star_in_base_x = s[4*w + k];
-        const real total_prr_yz = sums[4*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_prr_yz;
+        const real M_ta_prr_xz = sums[3*w + k];
+        const real h_star_y = s[5*w + k];
+        const real M_ta_xz = M_ta_prr_xz - h_star_y;
+        const real M_ta_prr_yz = sums[4*w + k];
+        const real h_star_x = s[4*w + k];
+        const real M_ta_yz = M_ta_prr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_prr_zz = sums[5*w + k];
-        const real M_aa_zz = total_prr_zz - J_star_t_6;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_prr_zz = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prr_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_prr_xy = sums[1*w + k];
-        M[1*w + k] = total_prr_xy;
-        M[3*w + k] = total_prr_xy;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_xz;
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[8*w + k] = M_aa_zz;
-        t->total[k] += (M_tt_xx + (total_prr_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
 }
 
@@ -1599,22 +1610,22 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1624,7 +1635,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[6*w + k] = omega_z;
         s[7*w + k] = Z_p_x;
         s[8*w + k] = Z_p_y;
-        s[9*w + k] = Z_q_t;
+        s[9*w + k] = Z_q_z;
     }
 }
 
@@ -1639,112 +1650,110 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2_t = -1/prr_v_2_in_axes0_y;
+        const real prr_qd_2_t_2 = prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
-        /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_t = omega_z*prr_S_dot_t_2;
-        const real prr_u_1_t_2 = omega_z*prr_S_dot_t;
         /* (prr-W_2) centripetal tensor of link 2 */
-        const real prr_W_2_t = prr_qd_2*prr_qd_2;
+        const real prr_W_2_t = prr_qd_2_t_2*prr_qd_2_t_2;
         /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_tip_x = axis_y_prr_axes2_in_base_x*prr_u_1_t_2 -
-            axis_y_prr_axes2_in_base_y*prr_u_1_t;
-        const real prr_u_1_tip_y = -axis_y_prr_axes2_in_base_x*prr_u_1_t -
-            axis_y_prr_axes2_in_base_y*prr_u_1_t_2;
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_u_1_x = -omega_z*prr_S_dot_t_2;
+        const real prr_u_1_t = omega_z*prr_S_dot_t;
+        const real prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x +
+            axis_y_prr_axes2_x*prr_u_1_t;
+        const real prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x -
+            axis_x_prr_axes2_x*prr_u_1_t;
         /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y);
-        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2;
-        const real prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2;
-        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o -
-            prr_acc_2_o_x*prr_h_2_y;
+        const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x +
+            prr_platform_joint_offset_x*prr_qd_2_t_2*prr_qd_2_t_2;
+        /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y +
+            prr_rel_o_in_axes2_x*prr_s_2);
         /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
-        const real prr_acc_1_o_x = -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t -
-            prr_s_2*prr_u_1_tip_y;
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x +
+            prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - prr_s_2*prr_u_1_in_axes2_y;
         /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass;
-        /* (prr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t);
+        const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
+        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
+            prr_g_in_axes0_y*prr_s_2;
+        const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
+            prr_c_2*prr_g_in_axes0_y;
+        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
         /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real prr_c_o_x = prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x -
-            prr_h_2_y*prr_qdd_2_o;
-        const real prr_c_o_y = prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o -
-            prr_G_o_t*prr_c_2;
+        const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
+            prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x);
+        const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x;
+        const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x +
+            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2;
         /* (prr-U) velocity and gravity terms of the leg force */
-        const real prr_U_in_base_x = -axis_y_prr_axes2_in_base_x*prr_c_o_y -
-            axis_y_prr_axes2_in_base_y*prr_c_o_x;
-        const real prr_U_in_base_y = axis_y_prr_axes2_in_base_x*prr_c_o_x -
-            axis_y_prr_axes2_in_base_y*prr_c_o_y;
+        const real prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+            axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+        const real prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+            axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_U_in_base_x : prr_U_in_base_x;  /* total_prr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_U_in_base_y : prr_U_in_base_y;  /* total_prr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Z_a_t : prr_Z_a_t;  /* total_prr_z */
+        const real prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_U_x : prr_U_x;  /* Z_t_prr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prr_U_y : prr_U_y;  /* Z_t_prr_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + prr_Z_a_t : prr_Z_a_t;  /* Z_a_prr_z */
         const real prr_size = m->prr_size[i];
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[1*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -1761,17 +1770,19 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[7*w + k];
-        const real total_prr_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_prr_x;
+        const real Z_t_prr_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prr_x;
         const real Z_p_y = s[8*w + k];
-        const real total_prr_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_prr_y;
+        const real Z_t_prr_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[9*w + k];
-        const real total_prr_z = sums[2*w + k];
-        const real Z_a_z = total_prr_z - Z_q_t;
+        const real Z_a_prr_z = sums[2*w + k];
+        const real Z_q_z = s[9*w + k];
+        const real Z_a_z = Z_a_prr_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
         t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
     }
@@ -1833,59 +1844,55 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_c_2*prr_platform_joint_offset_x;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y -
-            prr_q_in_base_y*prr_w_1_in_base_x;
-        o[0*count + k] = prr_w_1_in_base_x;
-        o[1*count + k] = prr_w_1_in_base_y;
+        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        /* (prr-w_1) reciprocal vector 1 */
+        o[0*count + k] = prr_w_1_x;
+        o[1*count + k] = prr_w_1_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
-        o[5*count + k] = prr_w_1_in_base_x + (prr_w_1_in_base_y + prr_H_a_1_z);
+        o[5*count + k] = prr_w_1_x + (prr_w_1_y + prr_H_a_1_z);
         const real prr_size = m->prr_size[i];
         o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(-prr_v_2_t) > TOLERANCE*prr_size);
+        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -1949,13 +1956,13 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real t_ddot_y = A_1;
         const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -1963,11 +1970,11 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
-        const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
+        const real f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y;
+        const real f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x;
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y;
+        const real J_star_zz = m->J_star_zz;
+        const real mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1995,127 +2002,126 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
+        /* (prr-w_1) reciprocal vector 1 */
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
         /* (prr-W_2) centripetal tensor of link 2 */
-        const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
-        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y -
-            prr_q_in_base_y*prr_w_1_in_base_x;
+        const real prr_W_2_t = prr_qd_2_t*prr_qd_2_t;
         /* (prr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y;
+        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x;
+        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
         /* (prr-S_ddot) acceleration of the connection point */
         const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
         const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_tip_x = axis_y_prr_axes2_in_base_y*prr_S_ddot_x -
-            axis_y_prr_axes2_in_base_x*prr_S_ddot_y;
-        const real prr_S_ddot_tip_y = axis_y_prr_axes2_in_base_x*prr_S_ddot_x +
-            axis_y_prr_axes2_in_base_y*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x -
+            axis_y_prr_axes2_x*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
+            axis_y_prr_axes2_x*prr_S_ddot_x;
         /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-qdd_1) acceleration of joint 1 */
-        const real prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2);
-        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2;
-        const real prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2;
-        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 -
-            prr_acc_2_x*prr_h_2_y;
+        const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
+            prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t;
+        /* (prr-B_2) acceleration tensor of link 2 */
+        const real prr_B_2_in_axes2_xy = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
+            prr_rel_in_axes2_x*prr_s_2);
         /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prr_acc_1_x = -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x -
-            prr_qdd_2*prr_v_2_t;
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x +
+            prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x - prr_S_ddot_in_axes2_y*prr_s_2;
         /* (prr-f_1) inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_f_1_x = prr_acc_1_x*prr_link1_mass;
-        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t);
+        const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass;
+        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
+            prr_g_in_axes0_y*prr_s_2;
+        const real prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
+            prr_c_2*prr_g_in_axes0_y;
+        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y;
         /* (prr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x -
-            prr_h_2_y*prr_qdd_2;
-        const real prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 -
-            prr_G_t*prr_c_2;
-        const real prr_c_in_base_x = axis_y_prr_axes2_in_base_x*prr_c_y +
-            axis_y_prr_axes2_in_base_y*prr_c_x;
-        const real prr_c_in_base_y = axis_y_prr_axes2_in_base_y*prr_c_y -
-            axis_y_prr_axes2_in_base_x*prr_c_x;
+        const real prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z -
+            prr_f_1_in_axes0_x*prr_v_2_in_axes0_x);
+        const real prr_c_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 -
+            prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_in_axes0_x;
+        const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x +
+            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t + prr_f_1_in_axes0_x*prr_s_2;
+        const real prr_c_x = axis_x_prr_axes2_x*prr_c_in_axes2_x +
+            axis_y_prr_axes2_x*prr_c_in_axes2_y;
+        const real prr_c_y = axis_x_prr_axes2_x*prr_c_in_axes2_y -
+            axis_y_prr_axes2_x*prr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real prr_R_a_t = prr_c_in_base_y*prr_q_in_base_x - prr_c_in_base_x*prr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_c_in_base_x : prr_c_in_base_x;  /* total_prr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_c_in_base_y : prr_c_in_base_y;  /* total_prr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_R_a_t : prr_R_a_t;  /* total_prr_z */
-        o[0*count + k] = prr_w_1_in_base_x;
-        o[1*count + k] = prr_w_1_in_base_y;
+        const real prr_R_a_t = prr_c_x*prr_q_y - prr_c_y*prr_q_x;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_c_x : prr_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + prr_c_y : prr_c_y;  /* R_t_t_2 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + prr_R_a_t : prr_R_a_t;  /* R_a_prr_z */
+        /* (prr-w_1) reciprocal vector 1 */
+        o[0*count + k] = prr_w_1_x;
+        o[1*count + k] = prr_w_1_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
         const real prr_size = m->prr_size[i];
         o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2135,18 +2141,20 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[10*w + k];
-        const real total_prr_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_prr_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[11*w + k];
-        const real total_prr_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_prr_y;
+        const real R_t_y = f_p_y - R_t_t_2;
         /* (R_a) moment that actuators and external wrench must give */
+        const real R_a_prr_z = sums[2*w + k];
         const real mu_p_z = s[12*w + k];
-        const real total_prr_z = sums[2*w + k];
-        const real R_a_z = mu_p_z - total_prr_z;
+        const real R_a_z = R_a_prr_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
+        /* (R_a) moment that actuators and external wrench must give */
         required[2*w + k] = R_a_z;
     }
 }
@@ -2217,28 +2225,28 @@ INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t leg,
         const real t_y = s[1*w + j];
         const real prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x -
             prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-q_1) displacement of joint 1 */
         const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_q_1_t = prr_branch_1*root(prr_disc_1);
-        const real prr_q_1 = prr_px_1 + prr_q_1_t;
+        const real prr_q_1_t = -prr_branch_1*root(prr_disc_1);
+        const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
         /* (prr-q_2) displacement of joint 2 */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_q_2 =
-            angle(inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy),
-            -inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t);
+            angle(inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t);
+        /* (prr-q_1) displacement of joint 1 */
         o[0*count + k] = prr_q_1;
+        /* (prr-q_2) displacement of joint 2 */
         o[1*count + k] = prr_q_2;
         o[3*count + k] = prr_q_1 + prr_q_2;
         o[2*count + k] = UNLESS(prr_disc_1 >= 0);
@@ -2316,48 +2324,49 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t leg, size_t
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_v_2_t =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real prr_S_dot_x = t_dot_x - omega_z*prr_q_in_base_y;
+        const real prr_S_dot_x = t_dot_x - omega_z*prr_q_y;
         const real t_dot_y = s[5*w + j];
-        const real prr_S_dot_y = t_dot_y + omega_z*prr_q_in_base_x;
-        /* (prr-qd_2) rate of joint 2 */
+        const real prr_S_dot_y = t_dot_y + omega_z*prr_q_x;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
+        const real prr_branch_1 = m->prr_branch_1[i];
+        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+        const real prr_v_2_in_axes0_y =
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+        /* (prr-qd_1) rate of joint 1 */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_qd_2 = (prr_S_dot_x*prr_base_frame_xy +
-            prr_S_dot_y*prr_base_frame_yy)/prr_v_2_t;
-        const real prr_qd_2_t = prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_2*(prr_S_x*prr_base_frame_xy
+        const real prr_qd_1_t = -(prr_S_dot_x*prr_base_frame_xy +
+            prr_S_dot_y*prr_base_frame_yy)/prr_v_2_in_axes0_y;
+        const real prr_qd_1 = prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
+            inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(prr_S_x*prr_base_frame_xy
             + prr_S_y*prr_base_frame_yy);
-        o[0*count + k] = prr_qd_2_t;
-        o[1*count + k] = -prr_qd_2;
-        o[4*count + k] = prr_qd_2_t + prr_qd_2;
+        /* (prr-qd_1) rate of joint 1 */
+        o[0*count + k] = prr_qd_1;
+        /* (prr-qd_2) rate of joint 2 */
+        o[1*count + k] = -prr_qd_1_t;
+        o[4*count + k] = prr_qd_1 + prr_qd_1_t;
         const real prr_size = m->prr_size[i];
         o[2*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(-prr_v_2_t) > TOLERANCE*prr_size);
+        o[3*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2445,79 +2454,76 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t leg
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2_t = -1/prr_v_2_in_axes0_y;
+        const real prr_qd_2_t_2 = prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
         /* (prr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y;
+        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x;
+        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
         /* (prr-S_ddot) acceleration of the connection point */
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
         const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
         const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_tip_y = axis_y_prr_axes2_in_base_x*prr_S_ddot_x +
-            axis_y_prr_axes2_in_base_y*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
+            axis_y_prr_axes2_x*prr_S_ddot_x;
         /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_x = axis_y_prr_axes2_in_base_y*prr_S_ddot_x +
-            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 -
-            axis_y_prr_axes2_in_base_x*prr_S_ddot_y;
+        const real prr_rel_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x +
+            prr_platform_joint_offset_x*prr_qd_2_t_2*prr_qd_2_t_2 -
+            axis_y_prr_axes2_x*prr_S_ddot_y;
         /* (prr-qdd_1) acceleration of joint 1 */
-        const real prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2);
-        const real prr_qdd_1_t = prr_S_ddot_tip_y*prr_s_2 + prr_c_2*prr_rel_x +
-            prr_platform_joint_offset_x*prr_qdd_2*prr_s_2;
-        o[0*count + k] = -prr_qdd_1_t;
-        o[1*count + k] = -prr_qdd_2;
-        o[4*count + k] = prr_qdd_1_t + prr_qdd_2;
+        const real prr_qdd_1_t = prr_qd_2_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
+            prr_rel_in_axes2_x*prr_s_2);
+        const real prr_qdd_1 = prr_c_2*prr_rel_in_axes2_x - prr_S_ddot_in_axes2_y*prr_s_2 -
+            prr_platform_joint_offset_x*prr_qdd_1_t*prr_s_2;
+        /* (prr-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = prr_qdd_1;
+        /* (prr-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = -prr_qdd_1_t;
+        o[4*count + k] = prr_qdd_1 + prr_qdd_1_t;
         const real prr_size = m->prr_size[i];
         o[2*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(-prr_v_2_t) > TOLERANCE*prr_size);
+        o[3*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2605,124 +2611,122 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
+        /* (prr-w_1) reciprocal vector 1 */
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
         /* (prr-W_2) centripetal tensor of link 2 */
-        const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
+        const real prr_W_2_t = prr_qd_2_t*prr_qd_2_t;
         /* (prr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y;
+        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x;
+        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
         /* (prr-S_ddot) acceleration of the connection point */
         const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
         const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_tip_x = axis_y_prr_axes2_in_base_y*prr_S_ddot_x -
-            axis_y_prr_axes2_in_base_x*prr_S_ddot_y;
-        const real prr_S_ddot_tip_y = axis_y_prr_axes2_in_base_x*prr_S_ddot_x +
-            axis_y_prr_axes2_in_base_y*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x -
+            axis_y_prr_axes2_x*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
+            axis_y_prr_axes2_x*prr_S_ddot_x;
         /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-qdd_1) acceleration of joint 1 */
-        const real prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2);
-        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2;
-        const real prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2;
-        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 -
-            prr_acc_2_x*prr_h_2_y;
+        const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
+            prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t;
+        /* (prr-B_2) acceleration tensor of link 2 */
+        const real prr_B_2_in_axes2_xy = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
+            prr_rel_in_axes2_x*prr_s_2);
         /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prr_acc_1_x = -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x -
-            prr_qdd_2*prr_v_2_t;
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x +
+            prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x - prr_S_ddot_in_axes2_y*prr_s_2;
         /* (prr-f_1) inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_f_1_x = prr_acc_1_x*prr_link1_mass;
-        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t);
+        const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass;
+        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
+            prr_g_in_axes0_y*prr_s_2;
+        const real prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
+            prr_c_2*prr_g_in_axes0_y;
+        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y;
         /* (prr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x -
-            prr_h_2_y*prr_qdd_2;
-        const real prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 -
-            prr_G_t*prr_c_2;
+        const real prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z -
+            prr_f_1_in_axes0_x*prr_v_2_in_axes0_x);
+        const real prr_c_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 -
+            prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_in_axes0_x;
+        const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x +
+            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t + prr_f_1_in_axes0_x*prr_s_2;
         /* (prr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real prr_link2_mass = m->prr_link2_mass[i];
-        const real prr_c_true_x = prr_c_x - prr_acc_2_x*prr_link2_mass;
-        const real prr_c_true_y = prr_c_y - prr_acc_2_y*prr_link2_mass;
-        const real prr_c_true_in_base_x = axis_y_prr_axes2_in_base_x*prr_c_true_y +
-            axis_y_prr_axes2_in_base_y*prr_c_true_x;
-        const real prr_c_true_in_base_y = axis_y_prr_axes2_in_base_y*prr_c_true_y -
-            axis_y_prr_axes2_in_base_x*prr_c_true_x;
-        o[0*count + k] = prr_c_true_in_base_x;
-        o[1*count + k] = prr_c_true_in_base_y;
-        o[2*count + k] = prr_w_1_in_base_x;
-        o[3*count + k] = prr_w_1_in_base_y;
+        const real prr_c_true_in_axes2_x = prr_c_in_axes2_x - prr_acc_2_in_axes2_x*prr_link2_mass;
+        const real prr_c_true_in_axes2_y = prr_c_in_axes2_y - prr_acc_2_in_axes2_y*prr_link2_mass;
+        const real prr_c_true_x = axis_x_prr_axes2_x*prr_c_true_in_axes2_x +
+            axis_y_prr_axes2_x*prr_c_true_in_axes2_y;
+        const real prr_c_true_y = axis_x_prr_axes2_x*prr_c_true_in_axes2_y -
+            axis_y_prr_axes2_x*prr_c_true_in_axes2_x;
+        /* (prr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = prr_c_true_x;
+        o[1*count + k] = prr_c_true_y;
+        /* (prr-w_1) reciprocal vector 1 */
+        o[2*count + k] = prr_w_1_x;
+        o[3*count + k] = prr_w_1_y;
         const real prr_size = m->prr_size[i];
         o[4*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[5*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[5*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2767,11 +2771,12 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
-            gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x -
+            R_yx*h_star_in_platform_y) + gravity_y*(R_xx*h_star_in_platform_y +
+            R_yx*h_star_in_platform_x + m_star*t_y);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -2799,42 +2804,42 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t leg, size_t l
         const real t_y = s[1*w + j];
         const real prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x -
             prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-q_1) displacement of joint 1 */
         const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_q_1_t = prr_branch_1*root(prr_disc_1);
-        const real prr_q_1 = prr_px_1 + prr_q_1_t;
+        const real prr_q_1_t = -prr_branch_1*root(prr_disc_1);
+        const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 = inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t;
+        const real prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (potential) potential energy */
-        const real prr_b_r0_x = m->prr_b_r0_x[i];
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_h_1_x = m->prr_h_1_x[i];
-        const real prr_h_1_y = m->prr_h_1_y[i];
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_h_2_y = m->prr_h_2_y[i];
+        const real prr_b_in_axes0_x = m->prr_b_in_axes0_x[i];
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_h_1_in_spec0_x = m->prr_h_1_in_spec0_x[i];
+        const real prr_h_1_in_spec0_y = m->prr_h_1_in_spec0_y[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_potential_t = m->prr_potential_t[i];
-        const real prr_potential_t_2 = prr_g_r0_x*(prr_h_1_x + prr_link1_mass*(prr_b_r0_x +
-            prr_q_1) - prr_c_2*prr_h_2_x - prr_h_2_y*prr_s_2) + prr_g_r0_y*(prr_h_1_y +
-            prr_potential_t + prr_h_2_x*prr_s_2 - prr_c_2*prr_h_2_y);
-        terms[0*count + k] = add ? terms[0*count + k] + prr_potential_t_2 : prr_potential_t_2;  /* total_prr */
+        const real prr_potential_t_2 = prr_g_in_axes0_x*(prr_h_1_in_spec0_x +
+            prr_c_2*prr_h_2_in_spec2_x + prr_link1_mass*(prr_b_in_axes0_x + prr_q_1) -
+            prr_h_2_in_spec2_y*prr_s_2) + prr_g_in_axes0_y*(prr_h_1_in_spec0_y + prr_potential_t +
+            prr_c_2*prr_h_2_in_spec2_y + prr_h_2_in_spec2_x*prr_s_2);
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_potential_t_2 : prr_potential_t_2;  /* potential_t_2 */
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
     }
 }
@@ -2851,8 +2856,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[4*w + k];
-        const real total_prr = sums[0*w + k];
-        const real potential_ = -potential_t - total_prr;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -2888,6 +2894,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -2905,73 +2912,72 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_c_2*prr_platform_joint_offset_x;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
-        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y -
-            prr_q_in_base_y*prr_w_1_in_base_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real prr_spread_t = b_c_x - prr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real prr_spread_t_2 = b_c_y - prr_platform_point_y;
-        const real prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real prr_pivot_size = magnitude(prr_v_2_t);
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
+        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real prr_pivot_size = magnitude(prr_v_2_in_axes0_y);
         const real inv_prr_size = m->inv_prr_size[i];
         const real prr_pivot = inv_prr_size*prr_pivot_size;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_spread_t_3 : prr_spread_t_3;  /* total_prr */
-        o[0*count + k] = prr_w_1_in_base_x;
-        o[1*count + k] = prr_w_1_in_base_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real prr_spread_t = b_c_in_platform_x - prr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real prr_spread_t_2 = b_c_in_platform_y - prr_platform_point_y;
+        const real prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_spread_t_3 : prr_spread_t_3;  /* spread_prr */
+        /* (prr-w_1) reciprocal vector 1 */
+        o[0*count + k] = prr_w_1_x;
+        o[1*count + k] = prr_w_1_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
+        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = prr_pivot;
         o[4*count + k] = prr_disc_1;
-        o[7*count + k] = (prr_w_1_in_base_x + prr_w_1_in_base_y) + (prr_H_a_1_z + (prr_pivot +
-            prr_disc_1));
+        o[7*count + k] = (prr_w_1_x + prr_w_1_y) + (prr_H_a_1_z + (prr_pivot + prr_disc_1));
         const real prr_size = m->prr_size[i];
         o[5*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[6*count + k] = UNLESS(magnitude(-prr_v_2_t) > TOLERANCE*prr_size);
+        o[6*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2995,9 +3001,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_prr = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_prr = sums[0*w + k];
-        const real spread_ = spread_t*root(total_prr);
+        const real spread_ = root(spread_prr)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -94,14 +94,15 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type prr; copies of the first fill up */
-    planar_3prr_real inv_prr_disc_1_t_5[4], inv_prr_size[4], prr_J_2_zz[4], prr_b_r0_x[4],
+    planar_3prr_real inv_prr_size[4], inv_prr_size_t[4], prr_J_2_in_spec2_zz[4], prr_b_in_axes0_x[4],
             prr_base_frame_xx[4], prr_base_frame_xy[4], prr_base_frame_yx[4], prr_base_frame_yy[4],
-            prr_base_point_x[4], prr_base_point_y[4], prr_branch_1[4], prr_disc_1_t[4], prr_g_r0_x[4],
-            prr_g_r0_y[4], prr_h_1_x[4], prr_h_1_y[4], prr_h_2_x[4], prr_h_2_y[4], prr_link1_mass[4],
-            prr_link2_mass[4], prr_platform_joint_offset_x[4], prr_platform_point_x[4],
-            prr_platform_point_y[4], prr_potential_t[4], prr_size[4];
-    planar_3prr_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
-            h_star_y, legs_size, m_star, spread_t;
+            prr_base_point_x[4], prr_base_point_y[4], prr_branch_1[4], prr_g_in_axes0_x[4],
+            prr_g_in_axes0_y[4], prr_h_1_in_spec0_x[4], prr_h_1_in_spec0_y[4], prr_h_2_in_spec2_x[4],
+            prr_h_2_in_spec2_y[4], prr_link1_mass[4], prr_link2_mass[4],
+            prr_platform_joint_offset_x[4], prr_platform_point_x[4], prr_platform_point_y[4],
+            prr_potential_t[4], prr_size[4], prr_size_t[4];
+    planar_3prr_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
+            gravity_y, h_star_in_platform_x, h_star_in_platform_y, legs_size, m_star, spread_t;
 } planar_3prr_model;
 
 extern const planar_3prr_params planar_3prr_default_params;

@@ -326,7 +326,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -483,23 +483,32 @@ def _prepare(p):
     J_star_t_4 = J_star_t_2*platform_mass
     # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (prr-disc_1) discriminant of the distance equation
-    prr_disc_1_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
-    # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-    inv_prr_disc_1_t_5 = 1.0/prr_disc_1_t
-    # (prr-rho_tip_2) connection point to the centre of mass of link 2
-    prr_rho_tip_2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x
-    # (prr-h_2) first moment of link 2 about the connection point
-    prr_h_2_x = prr_link2_mass*prr_rho_tip_2_x
-    prr_h_2_y = prr_link2_centre_of_mass_y*prr_link2_mass
     # (prr-size) length of the leg's lever arms, the measure of what is near singular
-    prr_size_t = 2.5e-07 + prr_disc_1_t
-    prr_size = sqrt(prr_size_t)
+    prr_size_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
+    prr_size_t_2 = 2.5e-07 + prr_size_t
+    prr_size = sqrt(prr_size_t_2)
+    # (prr-h_1) first moment of link 1 about the origin of link 1
+    prr_h_1_in_spec0_x = prr_link1_centre_of_mass_x*prr_link1_mass
+    prr_h_1_in_spec0_y = prr_link1_centre_of_mass_y*prr_link1_mass
+    # (prr-rho_tip_2) connection point to the centre of mass of link 2
+    prr_rho_tip_2_in_spec2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x
+    # (prr-h_2) first moment of link 2 about the connection point
+    prr_h_2_in_spec2_x = prr_link2_mass*prr_rho_tip_2_in_spec2_x
+    prr_h_2_in_spec2_y = prr_link2_centre_of_mass_y*prr_link2_mass
     # (prr-J_2) inertia tensor of link 2 about the connection point
     prr_J_2_t = (
-    prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y + prr_rho_tip_2_x*prr_rho_tip_2_x
+    prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y +
+        prr_rho_tip_2_in_spec2_x*prr_rho_tip_2_in_spec2_x
     )
-    prr_J_2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass
+    prr_J_2_in_spec2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass
+    # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_prr_size_t = 1.0/prr_size_t
+    # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+    prr_g_in_axes0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
+    # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+    prr_g_in_axes0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
+    # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_prr_size = 1.0/prr_size
     # (h_star) first moment about the platform origin
     prr_h_star_t = prr_link2_mass*prr_platform_point_x
     prr_h_star_t_2 = prr_link2_mass*prr_platform_point_y
@@ -508,78 +517,73 @@ def _prepare(p):
     prr_J_star_t_2 = prr_J_star_t + prr_platform_point_x*prr_platform_point_x
     prr_J_star_t_3 = prr_J_star_t*prr_link2_mass
     prr_J_star_t_4 = prr_J_star_t_2*prr_link2_mass
-    # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    prr_g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
-    prr_g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
-    # (prr-h_1) first moment of link 1 about the origin of link 1
-    prr_h_1_x = prr_link1_centre_of_mass_x*prr_link1_mass
-    prr_h_1_y = prr_link1_centre_of_mass_y*prr_link1_mass
     # (potential) potential energy
-    prr_b_r0_x = prr_base_frame_xx*prr_base_point_x + prr_base_frame_yx*prr_base_point_y
+    prr_b_in_axes0_x = prr_base_frame_xx*prr_base_point_x + prr_base_frame_yx*prr_base_point_y
     prr_potential_t = (
     prr_link1_mass*(prr_base_frame_xy*prr_base_point_x + prr_base_frame_yy*prr_base_point_y)
     )
-    # (prr-w_2) reciprocal vector 2
-    inv_prr_size = 1.0/prr_size
-    total_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
-    total_prr_x = np.sum(np.broadcast_to(prr_h_star_t, _prr))
-    total_prr_y = np.sum(np.broadcast_to(prr_h_star_t_2, _prr))
-    total_prr_xx = np.sum(np.broadcast_to(prr_J_star_t_3, _prr))
-    total_prr_zz = np.sum(np.broadcast_to(prr_J_star_t_4, _prr))
-    total_prr_x_2 = np.sum(np.broadcast_to(prr_platform_point_x, _prr))
-    total_prr_y_2 = np.sum(np.broadcast_to(prr_platform_point_y, _prr))
-    total_prr_2 = np.sum(np.broadcast_to(prr_size_t, _prr))
+    m_star_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
+    h_star_prr_in_platform_x = np.sum(np.broadcast_to(prr_h_star_t, _prr))
+    h_star_prr_in_platform_y = np.sum(np.broadcast_to(prr_h_star_t_2, _prr))
+    J_star_prr_in_platform_xx = np.sum(np.broadcast_to(prr_J_star_t_3, _prr))
+    J_star_prr_in_platform_zz = np.sum(np.broadcast_to(prr_J_star_t_4, _prr))
+    b_c_prr_in_platform_x = np.sum(np.broadcast_to(prr_platform_point_x, _prr))
+    b_c_prr_in_platform_y = np.sum(np.broadcast_to(prr_platform_point_y, _prr))
+    legs_size_prr = np.sum(np.broadcast_to(prr_size_t_2, _prr))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_prr
+    m_star = m_star_prr + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_prr_x
-    h_star_y = h_star_t_2 + total_prr_y
+    h_star_in_platform_x = h_star_prr_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_prr_in_platform_y + h_star_t_2
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = J_star_t_3 + total_prr_xx
-    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_prr_zz
-    J_star_t_6 = J_star_t_5 - J_star_xx
+    J_star_in_platform_xx = J_star_prr_in_platform_xx + J_star_t_3
+    J_star_t_5 = (
+    J_star_in_platform_xx - J_star_prr_in_platform_zz - J_star_t_4 - platform_inertia_zz
+    )
+    J_star_zz = J_star_in_platform_xx - J_star_t_5
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_prr_x_2
-    b_c_y = 0.3333333333333333*total_prr_y_2
+    b_c_in_platform_x = 0.3333333333333333*b_c_prr_in_platform_x
+    b_c_in_platform_y = 0.3333333333333333*b_c_prr_in_platform_y
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_prr_2)
+    legs_size = sqrt(legs_size_prr)*spread_t
     return {
         "dynamics": (
-        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x,
+                h_star_in_platform_y, m_star,),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    prr_size,),
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+                    prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x,
+                    prr_platform_point_x, prr_platform_point_y, prr_size, prr_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_6, h_star_x, h_star_y, m_star,),
+        (J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_h_2_in_spec2_x, prr_h_2_in_spec2_y, prr_link1_mass,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    prr_size,),
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
         "Z": (
-        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
+        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    prr_size,),
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+                    prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x,
+                    prr_platform_point_x, prr_platform_point_y, prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -587,22 +591,22 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+        (inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
         "required": (
-        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    prr_size,),
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+                    prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x,
+                    prr_platform_point_x, prr_platform_point_y, prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -610,10 +614,10 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+        (inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y,),
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size_t,),
                 ),
             ),
         ),
@@ -621,10 +625,10 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+        (inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -632,10 +636,10 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+        (inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -643,34 +647,36 @@ def _prepare(p):
         (),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-                    prr_link2_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+                    prr_h_2_in_spec2_y, prr_link1_mass, prr_link2_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_b_r0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_1_x, prr_h_1_y, prr_h_2_x,
-                    prr_h_2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_potential_t,),
+        (inv_prr_size_t, prr_b_in_axes0_x, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_1_in_spec0_x,
+                    prr_h_1_in_spec0_y, prr_h_2_in_spec2_x, prr_h_2_in_spec2_y, prr_link1_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_potential_t, prr_size_t,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, legs_size, spread_t,),
             (
                 (_prr,
-        (inv_prr_disc_1_t_5, inv_prr_size, prr_base_frame_xx, prr_base_frame_xy,
-                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_branch_1, prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+        (inv_prr_size, inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -1132,7 +1138,10 @@ def _run_dynamics(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    (
+    J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,
+        m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1152,180 +1161,191 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+            prr_platform_point_y, prr_size, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
-        prr_w_2_t = inv_prr_v_2_t_2*prr_s_2
-        prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
-        # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz
-        prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2
-        prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t
-        # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t
-        prr__r0_y_2 = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
-        # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prr_d_c_xx = (
-        prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass - prr_d_Gamma_1_t*prr_s_2)
-            - prr_h_2_y*prr_w_2_t
-        )
-        prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 - prr__r0_x*prr__r0_y_2
-        # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
-        prr_Q_t = (
-        prr_d_c_xx + prr__r0_y*prr__r0_y_2 + prr_d_Gamma_2_y*prr_w_2_t_2 + prr_h_2_x*prr_w_2_t_2
-        )
-        prr_Q_t_2 = 0.5*prr_Q_t
-        prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 - axis_y_prr_axes2_in_base_y*prr_d_c_xy
-        prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy + axis_y_prr_axes2_in_base_y*prr_Q_t_2
-        prr_Q_t_5 = 2.0*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx
-        prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 + axis_y_prr_axes2_in_base_y*prr_Q_t_3
-        prr_Q_t_7 = 2.0*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx
-        # (M_ta) coupling block of M
-        prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x
-        prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x
-        # (M_aa) rotational block of M
-        prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
+        # (prr-w_2) reciprocal vector 2
+        prr_w_2_t = prr_s_2*prr_w_1_t
+        prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t
         # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
-        # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_t = omega_z*prr_S_dot_t_2
-        prr_u_1_t_2 = omega_z*prr_S_dot_t
+        prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2*prr_qd_2
+        prr_W_2_t = prr_qd_2_t*prr_qd_2_t
         # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_tip_x = (
-        axis_y_prr_axes2_in_base_x*prr_u_1_t_2 - axis_y_prr_axes2_in_base_y*prr_u_1_t
-        )
-        prr_u_1_tip_y = (
-        -axis_y_prr_axes2_in_base_x*prr_u_1_t - axis_y_prr_axes2_in_base_y*prr_u_1_t_2
-        )
+        prr_u_1_x = -omega_z*prr_S_dot_t_2
+        prr_u_1_t = omega_z*prr_S_dot_t
+        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
+        prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
         # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y)
-        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
-        prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
-        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o - prr_acc_2_o_x*prr_h_2_y
+        prr_rel_o_in_axes2_x = (
+        prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t
+        )
+        # (prr-B_2_o) remainder of the acceleration tensor of link 2
+        prr_B_2_o_in_axes2_xy = (
+        prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
+        )
         # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        prr_acc_1_o_x = (
-        -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t - prr_s_2*prr_u_1_tip_y
+        prr_acc_1_o_in_axes0_x = (
+        prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x
+            - prr_s_2*prr_u_1_in_axes2_y
         )
         # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
-        prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass
-        # (prr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t)
+        prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
+        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prr_acc_2_o_in_axes2_x = (
+        prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
+        )
+        prr_acc_2_o_in_axes2_y = (
+        prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
+        )
+        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_o_in_axes2_z = (
+        prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
+            prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
+        )
+        # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t
+        prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2
+        prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t
+        # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t
+        prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_d_c_in_axes2_xx = (
+        prr_d_Gamma_2_in_axes2_x*prr_w_2_t - prr_h_2_in_spec2_y*prr_w_2_t -
+            prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass + prr_d_Gamma_1_t*prr_s_2)
+        )
+        prr_d_c_in_axes2_xy = (
+        prr_d_Gamma_2_in_axes2_y*prr_w_2_t + prr_h_2_in_spec2_y*prr_w_2_in_axes2_y -
+            prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x
+        )
         # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prr_c_o_x = (
-        prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x - prr_h_2_y*prr_qdd_2_o
+        prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_o_in_axes2_x = (
+        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x
         )
-        prr_c_o_y = (
-        prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o - prr_G_o_t*prr_c_2
+        prr_c_o_in_axes2_y = (
+        prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y +
+            prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2
         )
+        # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prr_Q_t = (
+        prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_y +
+            prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y
+        )
+        prr_Q_t_2 = 0.5*prr_Q_t
+        prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 - axis_x_prr_axes2_x*prr_d_c_in_axes2_xy
+        prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 + axis_y_prr_axes2_x*prr_d_c_in_axes2_xy
+        prr_Q_xx = 2.0*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx
+        prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4
+        prr_Q_yy = 2.0*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx
         # (prr-U) velocity and gravity terms of the leg force
-        prr_U_in_base_x = (
-        -axis_y_prr_axes2_in_base_x*prr_c_o_y - axis_y_prr_axes2_in_base_y*prr_c_o_x
-        )
-        prr_U_in_base_y = (
-        axis_y_prr_axes2_in_base_x*prr_c_o_x - axis_y_prr_axes2_in_base_y*prr_c_o_y
-        )
+        prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x - axis_y_prr_axes2_x*prr_c_o_in_axes2_y
+        prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x - axis_x_prr_axes2_x*prr_c_o_in_axes2_y
+        # (M_ta) coupling block of M
+        prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y
+        prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y
+        # (M_aa) rotational block of M
+        prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y
         # (Z_a) rotational part of Z
-        prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
+        prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y
         # (prr-H_a_1) moment of the column's unit force about the platform origin
-        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
         sums = m.added(sums, leg, (
-        prr_Q_t_5, prr_Q_t_6, prr_Q_t_7, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
-            prr_U_in_base_x, prr_U_in_base_y, prr_Z_a_t,
+        prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y,
+            prr_Z_a_t,
         ))
-        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
-        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        out_H[_H_prr[0][leg]] = prr_w_1_x
+        out_H[_H_prr[1][leg]] = prr_w_1_y
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
     (
-    total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz,
-        total_prr_x, total_prr_y, total_prr_z,
+    M_tt_prr_xx, M_tt_xy, M_tt_prr_yy, M_ta_prr_xz, M_ta_prr_yz, M_aa_prr_zz, Z_t_prr_x,
+        Z_t_prr_y, Z_a_prr_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star + total_prr_xx
-    M_tt_yy = m_star + total_prr_yy
+    M_tt_xx = M_tt_prr_xx + m_star
+    M_tt_yy = M_tt_prr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = -h_star_in_base_y - total_prr_xz
-    M_ta_yz = h_star_in_base_x - total_prr_yz
+    M_ta_xz = M_ta_prr_xz - h_star_y
+    M_ta_yz = M_ta_prr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = total_prr_zz - J_star_t_6
+    M_aa_zz = J_star_zz + M_aa_prr_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prr_x
-    Z_t_y = Z_p_y + total_prr_y
+    Z_t_x = Z_p_x + Z_t_prr_x
+    Z_t_y = Z_p_y + Z_t_prr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_prr_z - Z_q_t
+    Z_a_z = Z_a_prr_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = total_prr_xy
-    out_M[3] = total_prr_xy
+    out_M[1] = M_tt_xy
+    out_M[3] = M_tt_xy
     out_M[4] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[6] = M_ta_xz
     out_M[5] = M_ta_yz
     out_M[7] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[8] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_M, out_Z, out_H,)
 
@@ -1336,7 +1356,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_6, h_star_x, h_star_y, m_star = shared
+    J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1348,96 +1368,103 @@ def _run_M(m, X):
     ok = True
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_h_2_x, prr_h_2_y, prr_link1_mass, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_h_2_in_spec2_x, prr_h_2_in_spec2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
         # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
-        prr_w_2_t = inv_prr_v_2_t_2*prr_s_2
-        prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        # (prr-w_2) reciprocal vector 2
+        prr_w_2_t = prr_s_2*prr_w_1_t
+        prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t
         # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz
-        prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2
-        prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t
+        prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t
+        prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2
+        prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t
         # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t
-        prr__r0_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t
+        prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
         # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prr_d_c_xx = (
-        prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass - prr_d_Gamma_1_t*prr_s_2)
-            - prr_h_2_y*prr_w_2_t
+        prr_d_c_in_axes2_xx = (
+        prr_d_Gamma_2_in_axes2_x*prr_w_2_t - prr_h_2_in_spec2_y*prr_w_2_t -
+            prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass + prr_d_Gamma_1_t*prr_s_2)
         )
-        prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 - prr__r0_x*prr__r0_y
+        prr_d_c_in_axes2_xy = (
+        prr_d_Gamma_2_in_axes2_y*prr_w_2_t + prr_h_2_in_spec2_y*prr_w_2_in_axes2_y -
+            prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x
+        )
         # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_Q_t = (
-        prr_d_c_xx + prr__r0_y*(prr_c_2*prr_w_1_t - prr_s_2) + prr_d_Gamma_2_y*prr_w_2_t_2 +
-            prr_h_2_x*prr_w_2_t_2
+        prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*(prr_c_2*prr_w_1_t_2 - prr_s_2) +
+            prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y
         )
         prr_Q_t_2 = 0.5*prr_Q_t
-        prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 - axis_y_prr_axes2_in_base_y*prr_d_c_xy
-        prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy + axis_y_prr_axes2_in_base_y*prr_Q_t_2
-        prr_Q_t_5 = 2.0*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx
-        prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 + axis_y_prr_axes2_in_base_y*prr_Q_t_3
-        prr_Q_t_7 = 2.0*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx
+        prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 - axis_x_prr_axes2_x*prr_d_c_in_axes2_xy
+        prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 + axis_y_prr_axes2_x*prr_d_c_in_axes2_xy
+        prr_Q_xx = 2.0*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx
+        prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4
+        prr_Q_yy = 2.0*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx
         # (M_ta) coupling block of M
-        prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x
-        prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x
+        prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y
+        prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y
         # (M_aa) rotational block of M
-        prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
         sums = m.added(sums, leg, (
-        prr_Q_t_5, prr_Q_t_6, prr_Q_t_7, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
+        prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
         ))
-    total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz = sums
+    M_tt_prr_xx, M_tt_xy, M_tt_prr_yy, M_ta_prr_xz, M_ta_prr_yz, M_aa_prr_zz = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star + total_prr_xx
-    M_tt_yy = m_star + total_prr_yy
+    M_tt_xx = M_tt_prr_xx + m_star
+    M_tt_yy = M_tt_prr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = -h_star_in_base_y - total_prr_xz
-    M_ta_yz = h_star_in_base_x - total_prr_yz
+    M_ta_xz = M_ta_prr_xz - h_star_y
+    M_ta_yz = M_ta_prr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = total_prr_zz - J_star_t_6
+    M_aa_zz = J_star_zz + M_aa_prr_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = total_prr_xy
-    out_M[3] = total_prr_xy
+    out_M[1] = M_tt_xy
+    out_M[3] = M_tt_xy
     out_M[4] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[6] = M_ta_xz
     out_M[5] = M_ta_yz
     out_M[7] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[8] = M_aa_zz
     return ok, (out_M,)
 
@@ -1448,7 +1475,7 @@ def _run_Z(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
-    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y = shared
+    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1466,113 +1493,119 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+            prr_platform_point_y, prr_size, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
-        # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_t = omega_z*prr_S_dot_t_2
-        prr_u_1_t_2 = omega_z*prr_S_dot_t
+        prr_qd_2_t = -1.0/prr_v_2_in_axes0_y
+        prr_qd_2_t_2 = prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2*prr_qd_2
+        prr_W_2_t = prr_qd_2_t_2*prr_qd_2_t_2
         # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_tip_x = (
-        axis_y_prr_axes2_in_base_x*prr_u_1_t_2 - axis_y_prr_axes2_in_base_y*prr_u_1_t
-        )
-        prr_u_1_tip_y = (
-        -axis_y_prr_axes2_in_base_x*prr_u_1_t - axis_y_prr_axes2_in_base_y*prr_u_1_t_2
-        )
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_u_1_x = -omega_z*prr_S_dot_t_2
+        prr_u_1_t = omega_z*prr_S_dot_t
+        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
+        prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
         # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y)
-        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
-        prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
-        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o - prr_acc_2_o_x*prr_h_2_y
+        prr_rel_o_in_axes2_x = (
+        prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t_2*prr_qd_2_t_2
+        )
+        # (prr-B_2_o) remainder of the acceleration tensor of link 2
+        prr_B_2_o_in_axes2_xy = (
+        prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
+        )
         # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        prr_acc_1_o_x = (
-        -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t - prr_s_2*prr_u_1_tip_y
+        prr_acc_1_o_in_axes0_x = (
+        prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x
+            - prr_s_2*prr_u_1_in_axes2_y
         )
         # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
-        prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass
-        # (prr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t)
-        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prr_c_o_x = (
-        prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x - prr_h_2_y*prr_qdd_2_o
+        prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
+        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prr_acc_2_o_in_axes2_x = (
+        prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
         )
-        prr_c_o_y = (
-        prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o - prr_G_o_t*prr_c_2
+        prr_acc_2_o_in_axes2_y = (
+        prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
+        )
+        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_o_in_axes2_z = (
+        prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
+            prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
+        )
+        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_o_in_axes2_x = (
+        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x
+        )
+        prr_c_o_in_axes2_y = (
+        prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y +
+            prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2
         )
         # (prr-U) velocity and gravity terms of the leg force
-        prr_U_in_base_x = (
-        -axis_y_prr_axes2_in_base_x*prr_c_o_y - axis_y_prr_axes2_in_base_y*prr_c_o_x
-        )
-        prr_U_in_base_y = (
-        axis_y_prr_axes2_in_base_x*prr_c_o_x - axis_y_prr_axes2_in_base_y*prr_c_o_y
-        )
+        prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x - axis_y_prr_axes2_x*prr_c_o_in_axes2_y
+        prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x - axis_x_prr_axes2_x*prr_c_o_in_axes2_y
         # (Z_a) rotational part of Z
-        prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
         sums = m.added(sums, leg, (
-        prr_U_in_base_x, prr_U_in_base_y, prr_Z_a_t,
+        prr_U_x, prr_U_y, prr_Z_a_t,
         ))
-    total_prr_x, total_prr_y, total_prr_z = sums
+    Z_t_prr_x, Z_t_prr_y, Z_a_prr_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prr_x
-    Z_t_y = Z_p_y + total_prr_y
+    Z_t_x = Z_p_x + Z_t_prr_x
+    Z_t_y = Z_p_y + Z_t_prr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_prr_z - Z_q_t
+    Z_a_z = Z_a_prr_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_Z,)
 
@@ -1595,47 +1628,46 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+        inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
         # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-H_a_1) moment of the column's unit force about the platform origin
-        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
-        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
-        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
+        # (prr-w_1) reciprocal vector 1
+        out_H[_H_prr[0][leg]] = prr_w_1_x
+        out_H[_H_prr[1][leg]] = prr_w_1_y
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
     return ok, (out_H,)
 
@@ -1646,7 +1678,7 @@ def _run_required(m, X, V, A):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1672,125 +1704,137 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
-    f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
+    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
-    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
+    mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+            prr_platform_point_y, prr_size, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
-        # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
-        # (prr-H_a_1) moment of the column's unit force about the platform origin
-        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2_t*prr_qd_2_t
         # (prr-a_p) acceleration of the connection point without its centripetal part
-        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
-        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
         prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
-        prr_S_ddot_tip_x = (
-        axis_y_prr_axes2_in_base_y*prr_S_ddot_x - axis_y_prr_axes2_in_base_x*prr_S_ddot_y
-        )
-        prr_S_ddot_tip_y = (
-        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
-        )
+        prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
+        prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-qdd_1) acceleration of joint 1
-        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
-        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
-        prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
-        prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
-        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 - prr_acc_2_x*prr_h_2_y
+        prr_rel_in_axes2_x = (
+        prr_S_ddot_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t
+        )
+        # (prr-B_2) acceleration tensor of link 2
+        prr_B_2_in_axes2_xy = (
+        prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        )
         # (prr-acc_1) acceleration of the reference point of link 1, less gravity
-        prr_acc_1_x = (
-        -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x - prr_qdd_2*prr_v_2_t
+        prr_acc_1_in_axes0_x = (
+        prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+            prr_S_ddot_in_axes2_y*prr_s_2
         )
         # (prr-f_1) inertia force of link 1 less its weight
-        prr_f_1_x = prr_acc_1_x*prr_link1_mass
-        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t)
+        prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_acc_2_in_axes2_x = (
+        prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
+        )
+        prr_acc_2_in_axes2_y = (
+        prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
+        )
+        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_in_axes2_z = (
+        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz -
+            prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y
+        )
         # (prr-c) leg force on the platform without actuation and without the mass at the connection point
-        prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x - prr_h_2_y*prr_qdd_2
-        prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 - prr_G_t*prr_c_2
-        prr_c_in_base_x = axis_y_prr_axes2_in_base_x*prr_c_y + axis_y_prr_axes2_in_base_y*prr_c_x
-        prr_c_in_base_y = axis_y_prr_axes2_in_base_y*prr_c_y - axis_y_prr_axes2_in_base_x*prr_c_x
+        prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_in_axes2_x = (
+        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 - prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y -
+            prr_c_2*prr_f_1_in_axes0_x
+        )
+        prr_c_in_axes2_y = (
+        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t +
+            prr_f_1_in_axes0_x*prr_s_2
+        )
+        prr_c_x = axis_x_prr_axes2_x*prr_c_in_axes2_x + axis_y_prr_axes2_x*prr_c_in_axes2_y
+        prr_c_y = axis_x_prr_axes2_x*prr_c_in_axes2_y - axis_y_prr_axes2_x*prr_c_in_axes2_x
         # (R_a) moment that actuators and external wrench must give
-        prr_R_a_t = prr_c_in_base_y*prr_q_in_base_x - prr_c_in_base_x*prr_q_in_base_y
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        prr_R_a_t = prr_c_x*prr_q_y - prr_c_y*prr_q_x
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
         sums = m.added(sums, leg, (
-        prr_c_in_base_x, prr_c_in_base_y, prr_R_a_t,
+        prr_c_x, prr_c_y, prr_R_a_t,
         ))
-        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
-        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        out_H[_H_prr[0][leg]] = prr_w_1_x
+        out_H[_H_prr[1][leg]] = prr_w_1_y
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
-    total_prr_x, total_prr_y, total_prr_z = sums
+    R_t_t, R_t_t_2, R_a_prr_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_prr_x
-    R_t_y = f_p_y - total_prr_y
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
     # (R_a) moment that actuators and external wrench must give
-    R_a_z = mu_p_z - total_prr_z
+    R_a_z = R_a_prr_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
+    # (R_a) moment that actuators and external wrench must give
     out_required[2] = R_a_z
     return ok, (out_required, out_H,)
 
@@ -1814,28 +1858,29 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+        inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
         prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
         prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-q_1) displacement of joint 1
-        prr_q_1_t = prr_branch_1*sqrt(prr_disc_1)
-        prr_q_1 = prr_px_1 + prr_q_1_t
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
+        prr_q_1 = prr_S_in_axes0_x - prr_q_1_t
         # (prr-q_2) displacement of joint 2
         prr_q_2 = (
-        atan2(inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy), -inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t)
+        atan2(inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t)
         )
         ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
+        # (prr-q_1) displacement of joint 1
         out_q[_q_prr[0][leg]] = prr_q_1
+        # (prr-q_2) displacement of joint 2
         out_q[_q_prr[1][leg]] = prr_q_2
     return ok, (out_q,)
 
@@ -1865,37 +1910,43 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+        inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = (
-        inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x
-        )
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_x = t_dot_x - omega_z*prr_q_in_base_y
-        prr_S_dot_y = t_dot_y + omega_z*prr_q_in_base_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2 = (prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)/prr_v_2_t
-        prr_qd_2_t = (
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_y = (
+        -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x
+        )
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = (
+        -(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)/prr_v_2_in_axes0_y
+        )
+        prr_qd_1 = (
         prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_2*(prr_S_x*prr_base_frame_xy
+            inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(prr_S_x*prr_base_frame_xy
             + prr_S_y*prr_base_frame_yy)
         )
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
-        out_qd[_qd_prr[0][leg]] = prr_qd_2_t
-        out_qd[_qd_prr[1][leg]] = -prr_qd_2
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
+        # (prr-qd_1) rate of joint 1
+        out_qd[_qd_prr[0][leg]] = prr_qd_1
+        # (prr-qd_2) rate of joint 2
+        out_qd[_qd_prr[1][leg]] = -prr_qd_1_t
     return ok, (out_qd,)
 
 
@@ -1931,64 +1982,64 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+        inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        prr_qd_2_t = -1.0/prr_v_2_in_axes0_y
+        prr_qd_2_t_2 = prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-a_p) acceleration of the connection point without its centripetal part
-        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
-        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
-        prr_S_ddot_tip_y = (
-        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
-        )
+        prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_x = (
-        axis_y_prr_axes2_in_base_y*prr_S_ddot_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 -
-            axis_y_prr_axes2_in_base_x*prr_S_ddot_y
+        prr_rel_in_axes2_x = (
+        axis_x_prr_axes2_x*prr_S_ddot_x + prr_platform_joint_offset_x*prr_qd_2_t_2*prr_qd_2_t_2 -
+            axis_y_prr_axes2_x*prr_S_ddot_y
         )
         # (prr-qdd_1) acceleration of joint 1
-        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
-        prr_qdd_1_t = (
-        prr_S_ddot_tip_y*prr_s_2 + prr_c_2*prr_rel_x +
-            prr_platform_joint_offset_x*prr_qdd_2*prr_s_2
+        prr_qdd_1_t = prr_qd_2_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        prr_qdd_1 = (
+        prr_c_2*prr_rel_in_axes2_x - prr_S_ddot_in_axes2_y*prr_s_2 -
+            prr_platform_joint_offset_x*prr_qdd_1_t*prr_s_2
         )
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
-        out_qdd[_qdd_prr[0][leg]] = -prr_qdd_1_t
-        out_qdd[_qdd_prr[1][leg]] = -prr_qdd_2
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
+        # (prr-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_prr[0][leg]] = prr_qdd_1
+        # (prr-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_prr[1][leg]] = -prr_qdd_1_t
     return ok, (out_qdd,)
 
 
@@ -2025,102 +2076,112 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass, prr_link2_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_link2_mass, prr_platform_joint_offset_x,
+            prr_platform_point_x, prr_platform_point_y, prr_size, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
-        # (prr-W_2) centripetal tensor of link 2
-        prr_W_2_t = prr_qd_2*prr_qd_2
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
+        # (prr-qd_2) rate of joint 2
+        prr_qd_2_t = prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        # (prr-W_2) centripetal tensor of link 2
+        prr_W_2_t = prr_qd_2_t*prr_qd_2_t
         # (prr-a_p) acceleration of the connection point without its centripetal part
-        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
-        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
         prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
-        prr_S_ddot_tip_x = (
-        axis_y_prr_axes2_in_base_y*prr_S_ddot_x - axis_y_prr_axes2_in_base_x*prr_S_ddot_y
-        )
-        prr_S_ddot_tip_y = (
-        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
-        )
+        prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
+        prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-qdd_1) acceleration of joint 1
-        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
-        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
-        prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
-        prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
-        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 - prr_acc_2_x*prr_h_2_y
+        prr_rel_in_axes2_x = (
+        prr_S_ddot_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2_t*prr_qd_2_t
+        )
+        # (prr-B_2) acceleration tensor of link 2
+        prr_B_2_in_axes2_xy = (
+        prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        )
         # (prr-acc_1) acceleration of the reference point of link 1, less gravity
-        prr_acc_1_x = (
-        -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x - prr_qdd_2*prr_v_2_t
+        prr_acc_1_in_axes0_x = (
+        prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+            prr_S_ddot_in_axes2_y*prr_s_2
         )
         # (prr-f_1) inertia force of link 1 less its weight
-        prr_f_1_x = prr_acc_1_x*prr_link1_mass
-        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t)
+        prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_acc_2_in_axes2_x = (
+        prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
+        )
+        prr_acc_2_in_axes2_y = (
+        prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
+        )
+        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_in_axes2_z = (
+        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz -
+            prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y
+        )
         # (prr-c) leg force on the platform without actuation and without the mass at the connection point
-        prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x - prr_h_2_y*prr_qdd_2
-        prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 - prr_G_t*prr_c_2
+        prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_in_axes2_x = (
+        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 - prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y -
+            prr_c_2*prr_f_1_in_axes0_x
+        )
+        prr_c_in_axes2_y = (
+        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t +
+            prr_f_1_in_axes0_x*prr_s_2
+        )
         # (prr-c_true) leg force on the platform without actuation, the last link's mass included
-        prr_c_true_x = prr_c_x - prr_acc_2_x*prr_link2_mass
-        prr_c_true_y = prr_c_y - prr_acc_2_y*prr_link2_mass
-        prr_c_true_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr_c_true_y + axis_y_prr_axes2_in_base_y*prr_c_true_x
+        prr_c_true_in_axes2_x = prr_c_in_axes2_x - prr_acc_2_in_axes2_x*prr_link2_mass
+        prr_c_true_in_axes2_y = prr_c_in_axes2_y - prr_acc_2_in_axes2_y*prr_link2_mass
+        prr_c_true_x = (
+        axis_x_prr_axes2_x*prr_c_true_in_axes2_x + axis_y_prr_axes2_x*prr_c_true_in_axes2_y
         )
-        prr_c_true_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr_c_true_y - axis_y_prr_axes2_in_base_x*prr_c_true_x
+        prr_c_true_y = (
+        axis_x_prr_axes2_x*prr_c_true_in_axes2_y - axis_y_prr_axes2_x*prr_c_true_in_axes2_x
         )
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
-        out_leg_force[_leg_force_prr[0][leg]] = prr_c_true_in_base_x
-        out_leg_force[_leg_force_prr[1][leg]] = prr_c_true_in_base_y
-        out_drive[_drive_prr[0][leg]] = prr_w_1_in_base_x
-        out_drive[_drive_prr[1][leg]] = prr_w_1_in_base_y
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
+        # (prr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_prr[0][leg]] = prr_c_true_x
+        out_leg_force[_leg_force_prr[1][leg]] = prr_c_true_y
+        # (prr-w_1) reciprocal vector 1
+        out_drive[_drive_prr[0][leg]] = prr_w_1_x
+        out_drive[_drive_prr[1][leg]] = prr_w_1_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2130,7 +2191,7 @@ def _run_potential(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2143,49 +2204,50 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
-        R_yx*h_star_x + m_star*t_y)
+    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
+        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, prr_b_r0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_1_x, prr_h_1_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-            prr_potential_t,
+        inv_prr_size_t, prr_b_in_axes0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_g_in_axes0_x,
+            prr_g_in_axes0_y, prr_h_1_in_spec0_x, prr_h_1_in_spec0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+            prr_platform_point_y, prr_potential_t, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
         prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
         prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-q_1) displacement of joint 1
-        prr_q_1_t = prr_branch_1*sqrt(prr_disc_1)
-        prr_q_1 = prr_px_1 + prr_q_1_t
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
+        prr_q_1 = prr_S_in_axes0_x - prr_q_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
         # (potential) potential energy
         prr_potential_t_2 = (
-        prr_g_r0_x*(prr_h_1_x + prr_link1_mass*(prr_b_r0_x + prr_q_1) - prr_c_2*prr_h_2_x -
-            prr_h_2_y*prr_s_2) + prr_g_r0_y*(prr_h_1_y + prr_potential_t + prr_h_2_x*prr_s_2 -
-            prr_c_2*prr_h_2_y)
+        prr_g_in_axes0_x*(prr_h_1_in_spec0_x + prr_c_2*prr_h_2_in_spec2_x +
+            prr_link1_mass*(prr_b_in_axes0_x + prr_q_1) - prr_h_2_in_spec2_y*prr_s_2) +
+            prr_g_in_axes0_y*(prr_h_1_in_spec0_y + prr_potential_t + prr_c_2*prr_h_2_in_spec2_y +
+            prr_h_2_in_spec2_x*prr_s_2)
         )
         ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         prr_potential_t_2,
         ))
-    total_prr, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_prr
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -2196,7 +2258,7 @@ def _run_condition(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2212,68 +2274,68 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_prr_disc_1_t_5, inv_prr_size, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+        inv_prr_size, inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
         # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
-        # (prr-H_a_1) moment of the column's unit force about the platform origin
-        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
-        # (spread) rms distance of the platform points from their centroid
-        prr_spread_t = b_c_x - prr_platform_point_x
-        prr_spread_t_2 = b_c_y - prr_platform_point_y
-        prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2
-        # (prr-w_2) reciprocal vector 2
-        prr_pivot_size = abs(prr_v_2_t)
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_pivot_size = abs(prr_v_2_in_axes0_y)
         prr_pivot = inv_prr_size*prr_pivot_size
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
+        # (spread) rms distance of the platform points from their centroid
+        prr_spread_t = b_c_in_platform_x - prr_platform_point_x
+        prr_spread_t_2 = b_c_in_platform_y - prr_platform_point_y
+        prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2
         reached = reached & m.every(leg, (prr_disc_1 >= 0.0))
-        clear = clear & m.every(leg, (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
+        clear = clear & m.every(leg, (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
         prr_spread_t_3,
         ))
-        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
-        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        out_H[_H_prr[0][leg]] = prr_w_1_x
+        out_H[_H_prr[1][leg]] = prr_w_1_y
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_prr[0][leg]] = prr_pivot
         out_reach[_reach_prr[0][leg]] = prr_disc_1
-    total_prr, = sums
+    spread_prr, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_prr)
+    spread = sqrt(spread_prr)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

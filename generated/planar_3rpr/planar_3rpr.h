@@ -92,13 +92,14 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type rpr; copies of the first fill up */
-    planar_3rpr_real rpr_J_group_1_zz[4], rpr_b_r0_x[4], rpr_b_r0_y[4], rpr_base_frame_xx[4],
-            rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4],
-            rpr_base_point_y[4], rpr_branch_1[4], rpr_g_r0_x[4], rpr_g_r0_y[4], rpr_h_1_x[4],
-            rpr_h_1_y[4], rpr_h_2_x[4], rpr_h_2_y[4], rpr_link1_mass[4], rpr_link2_mass[4],
-            rpr_platform_point_x[4], rpr_platform_point_y[4];
-    planar_3rpr_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
-            h_star_y, legs_size, m_star, spread_t;
+    planar_3rpr_real rpr_J_group_1_in_axes1_zz[4], rpr_acc_2_t[4], rpr_acc_2_t_2[4],
+            rpr_base_frame_xx[4], rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4],
+            rpr_base_point_x[4], rpr_base_point_y[4], rpr_branch_1[4], rpr_h_1_in_spec1_x[4],
+            rpr_h_1_in_spec1_y[4], rpr_h_2_in_spec1_x[4], rpr_h_2_in_spec1_y[4], rpr_link1_mass[4],
+            rpr_link2_mass[4], rpr_platform_point_x[4], rpr_platform_point_y[4], rpr_potential_t[4],
+            rpr_potential_t_2[4];
+    planar_3rpr_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
+            gravity_y, h_star_in_platform_x, h_star_in_platform_y, legs_size, m_star, spread_t;
 } planar_3rpr_model;
 
 extern const planar_3rpr_params planar_3rpr_default_params;

@@ -96,17 +96,18 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type rrr; copies of the first fill up */
-    planar_3rrr_real inv_rrr_Kd_1_t_5[4], inv_rrr_Kd_1_t_7[4], inv_rrr_platform_joint_offset_x[4],
-            inv_rrr_rho2_1_t_4[4], inv_rrr_size[4], rrr_J_1_zz[4], rrr_J_2_zz[4], rrr_Jc_1_zz[4],
-            rrr_Kd_1_t_2[4], rrr_Kd_1_t_4[4], rrr_b_r0_x[4], rrr_b_r0_y[4], rrr_base_frame_xx[4],
-            rrr_base_frame_xy[4], rrr_base_frame_yx[4], rrr_base_frame_yy[4], rrr_base_point_x[4],
-            rrr_base_point_y[4], rrr_branch_1[4], rrr_d_Gamma_2_t[4], rrr_d_Gamma_2_y[4],
-            rrr_d_c_yy[4], rrr_d_phi_2_t[4], rrr_g_r0_x[4], rrr_g_r0_y[4], rrr_h_1_x[4], rrr_h_1_y[4],
-            rrr_h_2_x[4], rrr_h_2_y[4], rrr_joint2_offset_x[4], rrr_link1_mass[4], rrr_link2_mass[4],
-            rrr_platform_joint_offset_x[4], rrr_platform_point_x[4], rrr_platform_point_y[4],
-            rrr_rho2_1_t[4], rrr_size[4];
-    planar_3rrr_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
-            h_star_y, legs_size, m_star, spread_t;
+    planar_3rrr_real inv_rrr_rho2_1_t[4], inv_rrr_size[4], inv_rrr_size_t[4], inv_rrr_size_t_2[4],
+            rrr_J_1_in_spec1_zz[4], rrr_J_2_in_spec2_zz[4], rrr_Jc_1_in_axes1_zz[4], rrr_Kd_1_t[4],
+            rrr_Kd_1_t_2[4], rrr_base_frame_xx[4], rrr_base_frame_xy[4], rrr_base_frame_yx[4],
+            rrr_base_frame_yy[4], rrr_base_point_x[4], rrr_base_point_y[4], rrr_branch_1[4],
+            rrr_d_Gamma_2_in_axes2_y[4], rrr_d_Gamma_2_t[4], rrr_d_c_in_axes2_yy[4],
+            rrr_d_phi_2_in_axes2_xy[4], rrr_h_1_in_spec1_x[4], rrr_h_1_in_spec1_y[4],
+            rrr_h_2_in_spec2_x[4], rrr_h_2_in_spec2_y[4], rrr_joint2_offset_x[4], rrr_link1_mass[4],
+            rrr_link2_mass[4], rrr_mu_1_t[4], rrr_mu_1_t_2[4], rrr_platform_joint_offset_x[4],
+            rrr_platform_point_x[4], rrr_platform_point_y[4], rrr_potential_t[4],
+            rrr_potential_t_2[4], rrr_rho2_1_t[4], rrr_size[4], rrr_w_2_in_axes2_y[4];
+    planar_3rrr_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
+            gravity_y, h_star_in_platform_x, h_star_in_platform_y, legs_size, m_star, spread_t;
 } planar_3rrr_model;
 
 extern const planar_3rrr_params planar_3rrr_default_params;

@@ -494,13 +494,13 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rpr = 0;
-    real total_rpr_x = 0;
-    real total_rpr_y = 0;
-    real total_rpr_xx = 0;
-    real total_rpr_zz = 0;
-    real total_rpr_x_2 = 0;
-    real total_rpr_y_2 = 0;
+    real m_star_rpr = 0;
+    real h_star_rpr_in_platform_x = 0;
+    real h_star_rpr_in_platform_y = 0;
+    real J_star_rpr_in_platform_xx = 0;
+    real J_star_rpr_in_platform_zz = 0;
+    real b_c_rpr_in_platform_x = 0;
+    real b_c_rpr_in_platform_y = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -537,18 +537,22 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         const real rpr_link2_inertia_zz = params->rpr_link2_inertia[own][2][2];
         static const signed char signs_rpr_branch_1[] = {1, 1, 1, 1};
         const real rpr_branch_1 = signs_rpr_branch_1[own];
+        /* (rpr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rpr_h_1_in_spec1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
+        const real rpr_h_1_in_spec1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
         /* (rpr-h_2) first moment of link 2 about the connection point */
-        const real rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
-        const real rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
-        /* (rpr-J_1) inertia tensor of link 1 about the origin of link 1 */
-        const real rpr_J_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
-            rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
-        /* (rpr-J_2) inertia tensor of link 2 about the connection point */
-        const real rpr_J_2_t = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
-            rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
+        const real rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
+        const real rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
+        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
+        const real rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
         /* (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point */
-        const real rpr_J_group_1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
-            rpr_J_1_t*rpr_link1_mass + rpr_J_2_t*rpr_link2_mass;
+        const real rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
+            rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
+        const real rpr_J_group_1_t_2 = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
+            rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
+        const real rpr_J_group_1_in_axes1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
+            rpr_J_group_1_t*rpr_link1_mass + rpr_J_group_1_t_2*rpr_link2_mass;
         /* (h_star) first moment about the platform origin */
         const real rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x;
         const real rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y;
@@ -557,20 +561,14 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         const real rpr_J_star_t_2 = rpr_J_star_t + rpr_platform_point_x*rpr_platform_point_x;
         const real rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass;
         const real rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass;
-        /* (rpr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
-        const real rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
-        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
-        const real rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
         /* (potential) potential energy */
-        const real rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x +
+        const real rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x +
             rpr_base_frame_yx*rpr_base_point_y;
-        const real rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x +
+        const real rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x +
             rpr_base_frame_yy*rpr_base_point_y;
-        model->rpr_J_group_1_zz[leg] = rpr_J_group_1_zz;
-        model->rpr_b_r0_x[leg] = rpr_b_r0_x;
-        model->rpr_b_r0_y[leg] = rpr_b_r0_y;
+        model->rpr_J_group_1_in_axes1_zz[leg] = rpr_J_group_1_in_axes1_zz;
+        model->rpr_acc_2_t[leg] = rpr_acc_2_t;
+        model->rpr_acc_2_t_2[leg] = rpr_acc_2_t_2;
         model->rpr_base_frame_xx[leg] = rpr_base_frame_xx;
         model->rpr_base_frame_xy[leg] = rpr_base_frame_xy;
         model->rpr_base_frame_yx[leg] = rpr_base_frame_yx;
@@ -578,46 +576,47 @@ int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *mod
         model->rpr_base_point_x[leg] = rpr_base_point_x;
         model->rpr_base_point_y[leg] = rpr_base_point_y;
         model->rpr_branch_1[leg] = rpr_branch_1;
-        model->rpr_g_r0_x[leg] = rpr_g_r0_x;
-        model->rpr_g_r0_y[leg] = rpr_g_r0_y;
-        model->rpr_h_1_x[leg] = rpr_h_1_x;
-        model->rpr_h_1_y[leg] = rpr_h_1_y;
-        model->rpr_h_2_x[leg] = rpr_h_2_x;
-        model->rpr_h_2_y[leg] = rpr_h_2_y;
+        model->rpr_h_1_in_spec1_x[leg] = rpr_h_1_in_spec1_x;
+        model->rpr_h_1_in_spec1_y[leg] = rpr_h_1_in_spec1_y;
+        model->rpr_h_2_in_spec1_x[leg] = rpr_h_2_in_spec1_x;
+        model->rpr_h_2_in_spec1_y[leg] = rpr_h_2_in_spec1_y;
         model->rpr_link1_mass[leg] = rpr_link1_mass;
         model->rpr_link2_mass[leg] = rpr_link2_mass;
         model->rpr_platform_point_x[leg] = rpr_platform_point_x;
         model->rpr_platform_point_y[leg] = rpr_platform_point_y;
-        total_rpr += rpr_link2_mass;
-        total_rpr_x += rpr_h_star_t;
-        total_rpr_y += rpr_h_star_t_2;
-        total_rpr_xx += rpr_J_star_t_3;
-        total_rpr_zz += rpr_J_star_t_4;
-        total_rpr_x_2 += rpr_platform_point_x;
-        total_rpr_y_2 += rpr_platform_point_y;
+        model->rpr_potential_t[leg] = rpr_potential_t;
+        model->rpr_potential_t_2[leg] = rpr_potential_t_2;
+        m_star_rpr += rpr_link2_mass;
+        h_star_rpr_in_platform_x += rpr_h_star_t;
+        h_star_rpr_in_platform_y += rpr_h_star_t_2;
+        J_star_rpr_in_platform_xx += rpr_J_star_t_3;
+        J_star_rpr_in_platform_zz += rpr_J_star_t_4;
+        b_c_rpr_in_platform_x += rpr_platform_point_x;
+        b_c_rpr_in_platform_y += rpr_platform_point_y;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_rpr;
+    const real m_star = m_star_rpr + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_rpr_x;
-    const real h_star_y = h_star_t_2 + total_rpr_y;
+    const real h_star_in_platform_x = h_star_rpr_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_rpr_in_platform_y + h_star_t_2;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = J_star_t_3 + total_rpr_xx;
-    const real J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rpr_zz;
-    const real J_star_t_6 = J_star_t_5 - J_star_xx;
+    const real J_star_in_platform_xx = J_star_rpr_in_platform_xx + J_star_t_3;
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_rpr_in_platform_zz - J_star_t_4 -
+        platform_inertia_zz;
+    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.25)*total_rpr_x_2;
-    const real b_c_y = R(0.25)*total_rpr_y_2;
-    model->J_star_t_6 = J_star_t_6;
+    const real b_c_in_platform_x = R(0.25)*b_c_rpr_in_platform_x;
+    const real b_c_in_platform_y = R(0.25)*b_c_rpr_in_platform_y;
+    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
     model->m_star = m_star;
     return OK;
 }
@@ -1136,22 +1135,22 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1159,11 +1158,11 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[4*w + k] = t_dot_x;
         s[5*w + k] = t_dot_y;
         s[6*w + k] = omega_z;
-        s[7*w + k] = h_star_in_base_x;
-        s[8*w + k] = h_star_in_base_y;
+        s[7*w + k] = h_star_x;
+        s[8*w + k] = h_star_y;
         s[9*w + k] = Z_p_x;
         s[10*w + k] = Z_p_y;
-        s[11*w + k] = Z_q_t;
+        s[11*w + k] = Z_q_z;
     }
 }
 
@@ -1178,121 +1177,130 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
-        /* (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y;
-        /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_d_c_yy = -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x +
-            inv_rpr_root_1*rpr_J_group_1_zz);
-        /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rpr_Q_t = R(0.5)*rpr_d_c_yy;
-        const real rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t;
-        const real rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t;
-        const real rpr_Q_t_4 = 2*rpr_Q_t_2*rpr_axis_x_y;
-        const real rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y;
-        const real rpr_Q_t_6 = 2*rpr_Q_t_3*rpr_axis_x_x;
-        /* (M_ta) coupling block of M */
-        const real rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x;
-        const real rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x;
         /* (rpr-S_dot) velocity of the connection point */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
+        /* (rpr-W_1) centripetal tensor of link 1 */
+        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
         /* (rpr-u_1) centripetal acceleration of the connection point */
         const real rpr_u_1_t = omega_z*rpr_S_dot_t_2;
-        const real rpr_u_1_t_2 = omega_z*rpr_S_dot_t;
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-u_1) centripetal acceleration of the connection point */
-        const real rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2;
+        const real rpr_u_1_y = -omega_z*rpr_S_dot_t;
+        const real rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y +
+            axis_x_rpr_axes1_y*rpr_u_1_t;
         /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rpr_rel_o_y = rpr_u_1_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y;
-        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o;
-        /* (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y;
-        const real rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y;
+        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y;
         /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
-        const real rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t -
-            rpr_axis_x_y*rpr_u_1_t_2;
-        const real rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y;
+        const real rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x;
+        const real rpr_acc_2_o_in_axes1_x = axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
+            axis_x_rpr_axes1_x*rpr_u_1_t;
+        const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
+        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_phi_2_o_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_h_2_in_spec1_y*rpr_qdd_1_o;
         /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_mu_1_o_z = rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x +
-            rpr_g_tip_x*rpr_h_1_y - rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
+            rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+            rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+        /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rpr_d_c_in_axes1_xy = inv_rpr_root_1*rpr_h_2_in_spec1_y;
+        const real rpr_d_c_in_axes1_yy = -inv_rpr_root_1*rpr_h_2_in_spec1_x -
+            inv_rpr_root_1*(rpr_h_2_in_spec1_x + inv_rpr_root_1*rpr_J_group_1_in_axes1_zz);
         /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z -
-            rpr_h_2_x*rpr_qdd_1_o;
+        const real rpr_c_o_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
+        /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+        const real rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t -
+            axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
+        const real rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t +
+            axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
+        const real rpr_Q_xx = -2*axis_x_rpr_axes1_y*rpr_Q_t_2;
+        const real rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3;
+        const real rpr_Q_yy = -2*axis_x_rpr_axes1_x*rpr_Q_t_3;
         /* (rpr-U) velocity and gravity terms of the leg force */
-        const real rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y;
-        const real rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y;
+        const real rpr_U_x = axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+            axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
+        const real rpr_U_y = axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+            axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+        /* (M_ta) coupling block of M */
+        const real rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y;
+        const real rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y;
+        /* (M_aa) rotational block of M */
+        const real rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y;
         /* (Z_a) rotational part of Z */
-        const real rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y;
+        const real rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_t_4 : rpr_Q_t_4;  /* total_rpr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_t_5 : rpr_Q_t_5;  /* total_rpr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_t_6 : rpr_Q_t_6;  /* total_rpr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rpr_M_ta_t : rpr_M_ta_t;  /* total_rpr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rpr_M_ta_t_2 : rpr_M_ta_t_2;  /* total_rpr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rpr_M_aa_t : rpr_M_aa_t;  /* total_rpr_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rpr_U_in_base_x : rpr_U_in_base_x;  /* total_rpr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rpr_U_in_base_y : rpr_U_in_base_y;  /* total_rpr_y */
-        terms[8*count + k] = add ? terms[8*count + k] + rpr_Z_a_t : rpr_Z_a_t;  /* total_rpr_z */
-        o[0*count + k] = rpr_axis_x_x;
-        o[1*count + k] = rpr_axis_x_y;
+        const real rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_xx : rpr_Q_xx;  /* M_tt_rpr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_xy : rpr_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_yy : rpr_Q_yy;  /* M_tt_rpr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rpr_M_ta_t : rpr_M_ta_t;  /* M_ta_rpr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rpr_M_ta_t_2 : rpr_M_ta_t_2;  /* M_ta_rpr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rpr_M_aa_t : rpr_M_aa_t;  /* M_aa_rpr_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + rpr_U_x : rpr_U_x;  /* Z_t_rpr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rpr_U_y : rpr_U_y;  /* Z_t_rpr_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + rpr_Z_a_t : rpr_Z_a_t;  /* Z_a_rpr_z */
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[0*count + k] = axis_x_rpr_axes1_x;
+        o[1*count + k] = axis_x_rpr_axes1_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
-        o[4*count + k] = rpr_axis_x_x + (rpr_axis_x_y + rpr_H_a_2_z);
+        o[4*count + k] = axis_x_rpr_axes1_x + (axis_x_rpr_axes1_y + rpr_H_a_2_z);
         o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -1315,48 +1323,53 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rpr_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rpr_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rpr_xx;
-        const real total_rpr_yy = sums[2*w + k];
-        const real M_tt_yy = m_star - total_rpr_yy;
+        const real M_tt_xx = M_tt_rpr_xx + m_star;
+        const real M_tt_rpr_yy = sums[2*w + k];
+        const real M_tt_yy = M_tt_rpr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[8*w + k];
-        const real total_rpr_xz = sums[3*w + k];
-        const real M_ta_xz = total_rpr_xz - h_star_in_base_y;
-        const real h_star_in_base_x = s[7*w + k];
-        const real total_rpr_yz = sums[4*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_rpr_yz;
+        const real M_ta_rpr_xz = sums[3*w + k];
+        const real h_star_y = s[8*w + k];
+        const real M_ta_xz = M_ta_rpr_xz - h_star_y;
+        const real M_ta_rpr_yz = sums[4*w + k];
+        const real h_star_x = s[7*w + k];
+        const real M_ta_yz = M_ta_rpr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_rpr_zz = sums[5*w + k];
-        const real M_aa_zz = -J_star_t_6 - total_rpr_zz;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_rpr_zz = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rpr_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[9*w + k];
-        const real total_rpr_x = sums[6*w + k];
-        const real Z_t_x = Z_p_x + total_rpr_x;
+        const real Z_t_rpr_x = sums[6*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rpr_x;
         const real Z_p_y = s[10*w + k];
-        const real total_rpr_y = sums[7*w + k];
-        const real Z_t_y = Z_p_y + total_rpr_y;
+        const real Z_t_rpr_y = sums[7*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rpr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[11*w + k];
-        const real total_rpr_z = sums[8*w + k];
-        const real Z_a_z = total_rpr_z - Z_q_t;
+        const real Z_a_rpr_z = sums[8*w + k];
+        const real Z_q_z = s[11*w + k];
+        const real Z_a_z = Z_a_rpr_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rpr_xy = sums[1*w + k];
-        M[1*w + k] = total_rpr_xy;
-        M[3*w + k] = total_rpr_xy;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_xz;
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[8*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
-        t->total[k] += ((M_tt_xx + total_rpr_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) +
-            (Z_t_x + (Z_t_y + Z_a_z)));
+        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
+            + (Z_t_y + Z_a_z)));
     }
 }
 
@@ -1401,16 +1414,16 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
-        s[4*w + k] = h_star_in_base_x;
-        s[5*w + k] = h_star_in_base_y;
+        s[4*w + k] = h_star_x;
+        s[5*w + k] = h_star_y;
     }
 }
 
@@ -1425,59 +1438,62 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
         /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
-        /* (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y;
+        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
+        /* (rpr-w_2) reciprocal vector 2 */
+        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
+        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
         /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_d_c_yy = -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x +
-            inv_rpr_root_1*rpr_J_group_1_zz);
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_d_c_in_axes1_yy = -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y -
+            rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
+            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y);
         /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rpr_Q_t = R(0.5)*rpr_d_c_yy;
-        const real rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t;
-        const real rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t;
-        const real rpr_Q_t_4 = 2*rpr_Q_t_2*rpr_axis_x_y;
-        const real rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y;
-        const real rpr_Q_t_6 = 2*rpr_Q_t_3*rpr_axis_x_x;
+        const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+        const real rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x;
+        const real rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y;
+        const real rpr_Q_xx = -2*rpr_Q_t_2*rpr_w_2_y;
+        const real rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y;
+        const real rpr_Q_yy = -2*rpr_Q_t_3*rpr_w_2_x;
         /* (M_ta) coupling block of M */
-        const real rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x;
-        const real rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x;
+        const real rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y;
+        const real rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y;
         /* (M_aa) rotational block of M */
-        const real rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_t_4 : rpr_Q_t_4;  /* total_rpr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_t_5 : rpr_Q_t_5;  /* total_rpr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_t_6 : rpr_Q_t_6;  /* total_rpr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rpr_M_ta_t : rpr_M_ta_t;  /* total_rpr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rpr_M_ta_t_2 : rpr_M_ta_t_2;  /* total_rpr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rpr_M_aa_t : rpr_M_aa_t;  /* total_rpr_zz */
+        const real rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_xx : rpr_Q_xx;  /* M_tt_rpr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_xy : rpr_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_yy : rpr_Q_yy;  /* M_tt_rpr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rpr_M_ta_t : rpr_M_ta_t;  /* M_ta_rpr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rpr_M_ta_t_2 : rpr_M_ta_t_2;  /* M_ta_rpr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rpr_M_aa_t : rpr_M_aa_t;  /* M_aa_rpr_zz */
         o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -1495,33 +1511,36 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rpr_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_rpr_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_rpr_xx;
-        const real total_rpr_yy = sums[2*w + k];
-        const real M_tt_yy = m_star - total_rpr_yy;
+        const real M_tt_xx = M_tt_rpr_xx + m_star;
+        const real M_tt_rpr_yy = sums[2*w + k];
+        const real M_tt_yy = M_tt_rpr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[5*w + k];
-        const real total_rpr_xz = sums[3*w + k];
-        const real M_ta_xz = total_rpr_xz - h_star_in_base_y;
-        const real h_star_in_base_x = s[4*w + k];
-        const real total_rpr_yz = sums[4*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_rpr_yz;
+        const real M_ta_rpr_xz = sums[3*w + k];
+        const real h_star_y = s[5*w + k];
+        const real M_ta_xz = M_ta_rpr_xz - h_star_y;
+        const real M_ta_rpr_yz = sums[4*w + k];
+        const real h_star_x = s[4*w + k];
+        const real M_ta_yz = M_ta_rpr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_rpr_zz = sums[5*w + k];
-        const real M_aa_zz = -J_star_t_6 - total_rpr_zz;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_rpr_zz = sums[5*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rpr_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rpr_xy = sums[1*w + k];
-        M[1*w + k] = total_rpr_xy;
-        M[3*w + k] = total_rpr_xy;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_xz;
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[8*w + k] = M_aa_zz;
-        t->total[k] += (M_tt_xx + (total_rpr_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
+        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
 }
 
@@ -1570,22 +1589,22 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1595,7 +1614,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[6*w + k] = omega_z;
         s[7*w + k] = Z_p_x;
         s[8*w + k] = Z_p_y;
-        s[9*w + k] = Z_q_t;
+        s[9*w + k] = Z_q_z;
     }
 }
 
@@ -1610,90 +1629,94 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
         /* (rpr-S_dot) velocity of the connection point */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
+        /* (rpr-W_1) centripetal tensor of link 1 */
+        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
         /* (rpr-u_1) centripetal acceleration of the connection point */
         const real rpr_u_1_t = omega_z*rpr_S_dot_t_2;
-        const real rpr_u_1_t_2 = omega_z*rpr_S_dot_t;
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-u_1) centripetal acceleration of the connection point */
-        const real rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2;
+        const real rpr_u_1_y = -omega_z*rpr_S_dot_t;
+        const real rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y +
+            axis_x_rpr_axes1_y*rpr_u_1_t;
         /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rpr_rel_o_y = rpr_u_1_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y;
-        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o;
-        /* (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y;
-        const real rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y;
+        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y;
         /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
-        const real rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t -
-            rpr_axis_x_y*rpr_u_1_t_2;
-        const real rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y;
+        const real rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x;
+        const real rpr_acc_2_o_in_axes1_x = axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
+            axis_x_rpr_axes1_x*rpr_u_1_t;
+        const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
+        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_phi_2_o_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_h_2_in_spec1_y*rpr_qdd_1_o;
         /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_mu_1_o_z = rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x +
-            rpr_g_tip_x*rpr_h_1_y - rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
+            rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+            rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
         /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z -
-            rpr_h_2_x*rpr_qdd_1_o;
+        const real rpr_c_o_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
         /* (rpr-U) velocity and gravity terms of the leg force */
-        const real rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y;
-        const real rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y;
+        const real rpr_U_x = axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+            axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
+        const real rpr_U_y = axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+            axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
         /* (Z_a) rotational part of Z */
-        const real rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_U_in_base_x : rpr_U_in_base_x;  /* total_rpr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rpr_U_in_base_y : rpr_U_in_base_y;  /* total_rpr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rpr_Z_a_t : rpr_Z_a_t;  /* total_rpr_z */
+        const real rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_U_x : rpr_U_x;  /* Z_t_rpr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_U_y : rpr_U_y;  /* Z_t_rpr_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_Z_a_t : rpr_Z_a_t;  /* Z_a_rpr_z */
         o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -1711,17 +1734,19 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[7*w + k];
-        const real total_rpr_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_rpr_x;
+        const real Z_t_rpr_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rpr_x;
         const real Z_p_y = s[8*w + k];
-        const real total_rpr_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_rpr_y;
+        const real Z_t_rpr_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rpr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[9*w + k];
-        const real total_rpr_z = sums[2*w + k];
-        const real Z_a_z = total_rpr_z - Z_q_t;
+        const real Z_a_rpr_z = sums[2*w + k];
+        const real Z_q_z = s[9*w + k];
+        const real Z_a_z = Z_a_rpr_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
         t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
     }
@@ -1783,37 +1808,40 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
         /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
+        /* (rpr-w_2) reciprocal vector 2 */
+        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
+        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y;
-        o[0*count + k] = rpr_axis_x_x;
-        o[1*count + k] = rpr_axis_x_y;
+        const real rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x;
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[0*count + k] = rpr_w_2_x;
+        o[1*count + k] = rpr_w_2_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
-        o[4*count + k] = rpr_axis_x_x + (rpr_axis_x_y + rpr_H_a_2_z);
+        o[4*count + k] = rpr_w_2_x + (rpr_w_2_y + rpr_H_a_2_z);
         o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -1878,13 +1906,13 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real t_ddot_y = A_1;
         const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -1892,11 +1920,11 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
-        const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
+        const real f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y;
+        const real f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x;
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y;
+        const real J_star_zz = m->J_star_zz;
+        const real mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1924,96 +1952,105 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
+        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
+        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
         /* (rpr-S_dot) velocity of the connection point */
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
         /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y;
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
         /* (rpr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y;
+        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x;
+        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
         /* (rpr-S_ddot) acceleration of the connection point */
         const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
         const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
-        const real rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y;
+        const real rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
+            axis_x_rpr_axes1_y*rpr_S_ddot_x;
         /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_y = rpr_S_ddot_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
         /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
-        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
-        const real rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1;
-        const real rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1;
-        const real rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y -
-            rpr_g_r1_x;
-        const real rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y;
+        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
+        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
+        const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
+        const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
+        const real rpr_acc_2_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
+            axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x;
+        const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
         /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1;
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_phi_2_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_h_2_in_spec1_y*rpr_qdd_1;
         /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_mu_1_z = rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x +
-            rpr_g_r1_x*rpr_h_1_y - rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
+            rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+            rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
         /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z -
-            rpr_h_2_x*rpr_qdd_1;
-        const real rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y;
-        const real rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x;
+        const real rpr_c_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_in_axes1_z -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1;
+        const real rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
+            axis_x_rpr_axes1_y*rpr_c_in_axes1_y;
+        const real rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y -
+            axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rpr_R_a_t = rpr_c_in_base_y*rpr_q_in_base_x - rpr_c_in_base_x*rpr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_c_in_base_x : rpr_c_in_base_x;  /* total_rpr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rpr_c_in_base_y : rpr_c_in_base_y;  /* total_rpr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rpr_R_a_t : rpr_R_a_t;  /* total_rpr_z */
-        o[0*count + k] = rpr_axis_x_x;
-        o[1*count + k] = rpr_axis_x_y;
+        const real rpr_R_a_t = rpr_c_x*rpr_q_y - rpr_c_y*rpr_q_x;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+        const real rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_c_x : rpr_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_c_y : rpr_c_y;  /* R_t_t_2 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_R_a_t : rpr_R_a_t;  /* R_a_rpr_z */
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[0*count + k] = axis_x_rpr_axes1_x;
+        o[1*count + k] = axis_x_rpr_axes1_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
         o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
@@ -2035,18 +2072,20 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[10*w + k];
-        const real total_rpr_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_rpr_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[11*w + k];
-        const real total_rpr_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_rpr_y;
+        const real R_t_y = f_p_y - R_t_t_2;
         /* (R_a) moment that actuators and external wrench must give */
+        const real R_a_rpr_z = sums[2*w + k];
         const real mu_p_z = s[12*w + k];
-        const real total_rpr_z = sums[2*w + k];
-        const real R_a_z = mu_p_z - total_rpr_z;
+        const real R_a_z = R_a_rpr_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
+        /* (R_a) moment that actuators and external wrench must give */
         required[2*w + k] = R_a_z;
     }
 }
@@ -2104,24 +2143,25 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t leg,
         const real t_y = s[1*w + j];
         const real rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
             rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
         /* (rpr-q_1) displacement of joint 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
         const real rpr_q_1 = angle(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1);
+        /* (rpr-q_1) displacement of joint 1 */
         o[0*count + k] = rpr_q_1;
+        /* (rpr-q_2) displacement of joint 2 */
         o[1*count + k] = rpr_root_1;
         o[3*count + k] = rpr_q_1 + rpr_root_1;
         o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
@@ -2200,44 +2240,46 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t leg, size_t
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
         /* (rpr-S_dot) velocity of the connection point */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real rpr_S_dot_x = t_dot_x - omega_z*rpr_q_in_base_y;
+        const real rpr_S_dot_x = t_dot_x - omega_z*rpr_q_y;
         const real t_dot_y = s[5*w + j];
-        const real rpr_S_dot_y = t_dot_y + omega_z*rpr_q_in_base_x;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_y = t_dot_y + omega_z*rpr_q_x;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
+        /* (rpr-qd_1) rate of joint 1 */
         o[0*count + k] = rpr_qd_1;
-        o[1*count + k] = rpr_S_dot_tip_x;
-        o[3*count + k] = rpr_qd_1 + rpr_S_dot_tip_x;
+        /* (rpr-qd_2) rate of joint 2 */
+        o[1*count + k] = rpr_S_dot_in_axes1_x;
+        o[3*count + k] = rpr_qd_1 + rpr_S_dot_in_axes1_x;
         o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -2326,62 +2368,64 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t leg
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
         /* (rpr-S_dot) velocity of the connection point */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
         /* (rpr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y;
+        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x;
+        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
         /* (rpr-S_ddot) acceleration of the connection point */
         const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
         const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
         /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y +
-            rpr_qd_1*rpr_qd_1*rpr_root_1;
-        const real rpr_rel_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y -
-            2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
+            axis_x_rpr_axes1_y*rpr_S_ddot_y + rpr_qd_1*rpr_qd_1*rpr_root_1;
+        const real rpr_rel_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
+            axis_x_rpr_axes1_y*rpr_S_ddot_x - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
+        /* (rpr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = rpr_qdd_1;
-        o[1*count + k] = rpr_rel_x;
-        o[3*count + k] = rpr_qdd_1 + rpr_rel_x;
+        /* (rpr-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = rpr_rel_in_axes1_x;
+        o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
         o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -2470,94 +2514,100 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
+        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
+        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
         /* (rpr-S_dot) velocity of the connection point */
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
         /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
         /* (rpr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y;
+        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x;
+        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
         /* (rpr-S_ddot) acceleration of the connection point */
         const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
         const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
-        const real rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y;
+        const real rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
+            axis_x_rpr_axes1_y*rpr_S_ddot_x;
         /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_y = rpr_S_ddot_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
         /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
-        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
-        const real rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1;
-        const real rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1;
-        const real rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y -
-            rpr_g_r1_x;
-        const real rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y;
+        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
+        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
+        const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
+        const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
+        const real rpr_acc_2_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
+            axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x;
+        const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
         /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_mu_1_z = rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x +
-            rpr_g_r1_x*rpr_h_1_y - rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
+            rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+            rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
         /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z -
-            rpr_h_2_x*rpr_qdd_1;
+        const real rpr_c_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_in_axes1_z -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1;
         /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rpr_link2_mass = m->rpr_link2_mass[i];
-        const real rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 -
-            rpr_acc_2_x*rpr_link2_mass;
-        const real rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass;
-        const real rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y;
-        const real rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x;
-        o[0*count + k] = rpr_c_true_in_base_x;
-        o[1*count + k] = rpr_c_true_in_base_y;
-        o[2*count + k] = rpr_axis_x_x;
-        o[3*count + k] = rpr_axis_x_y;
+        const real rpr_c_true_in_axes1_x = rpr_h_2_in_spec1_y*rpr_qdd_1 -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_acc_2_in_axes1_x*rpr_link2_mass;
+        const real rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass;
+        const real rpr_c_true_x = axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
+            axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
+        const real rpr_c_true_y = axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
+            axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
+        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rpr_c_true_x;
+        o[1*count + k] = rpr_c_true_y;
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[2*count + k] = axis_x_rpr_axes1_x;
+        o[3*count + k] = axis_x_rpr_axes1_y;
         o[4*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -2603,11 +2653,12 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
-            gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x -
+            R_yx*h_star_in_platform_y) + gravity_y*(R_xx*h_star_in_platform_y +
+            R_yx*h_star_in_platform_x + m_star*t_y);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -2635,40 +2686,41 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t l
         const real t_y = s[1*w + j];
         const real rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
             rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
         /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
         const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
         /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
         /* (potential) potential energy */
-        const real rpr_b_r0_x = m->rpr_b_r0_x[i];
-        const real rpr_b_r0_y = m->rpr_b_r0_y[i];
-        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
-        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
+        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
+        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
         const real rpr_link1_mass = m->rpr_link1_mass[i];
-        const real rpr_potential_t = (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x +
-            rpr_h_2_x + rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) +
-            (rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y +
-            rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 - rpr_b_r0_x*rpr_s_1));
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_potential_t : rpr_potential_t;  /* total_rpr */
+        const real rpr_potential_t = m->rpr_potential_t[i];
+        const real rpr_potential_t_2 = m->rpr_potential_t_2[i];
+        const real rpr_potential_t_3 = (rpr_acc_2_t*rpr_c_1 +
+            rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
+            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
+            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_potential_t_3 : rpr_potential_t_3;  /* potential_t_2 */
         o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -2686,8 +2738,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[4*w + k];
-        const real total_rpr = sums[0*w + k];
-        const real potential_ = -potential_t - total_rpr;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -2722,6 +2775,7 @@ INLINE void condition_before(size_t w, const real *X, real *s, real *lengths, ve
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         lengths[1*w + k] = R(0.62);
         t->total[k] += 0;
     }
@@ -2738,53 +2792,57 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
         /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rpr_spread_t = b_c_x - rpr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rpr_spread_t_2 = b_c_y - rpr_platform_point_y;
-        const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_pivot_size = magnitude(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real rpr_pivot_size_2 = magnitude(rpr_root_1);
+        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
+        /* (rpr-w_2) reciprocal vector 2 */
+        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
+        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
         /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real rpr_pivot_size = magnitude(rpr_rho2_1);
+        const real rpr_pivot_size_2 = magnitude(rpr_root_1);
         const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
             R(1.6129032258064517)*rpr_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_spread_t_3 : rpr_spread_t_3;  /* total_rpr */
-        o[0*count + k] = rpr_axis_x_x;
-        o[1*count + k] = rpr_axis_x_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+        const real rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y;
+        const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_spread_t_3 : rpr_spread_t_3;  /* spread_rpr */
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[0*count + k] = rpr_w_2_x;
+        o[1*count + k] = rpr_w_2_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
+        /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = rpr_least_pivots;
-        o[5*count + k] = (rpr_axis_x_x + rpr_axis_x_y) + (rpr_H_a_2_z + rpr_least_pivots);
+        o[5*count + k] = (rpr_w_2_x + rpr_w_2_y) + (rpr_H_a_2_z + rpr_least_pivots);
         o[4*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -2807,8 +2865,9 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
-        const real total_rpr = sums[0*w + k];
-        const real spread_ = R(0.5)*root(total_rpr);
+        const real spread_rpr = sums[0*w + k];
+        const real spread_ = R(0.5)*root(spread_rpr);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

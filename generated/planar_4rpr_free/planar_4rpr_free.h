@@ -110,20 +110,22 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type rpr; copies of the first fill up */
-    planar_4rpr_free_real rpr_J_group_1_zz[4], rpr_b_r0_x[4], rpr_b_r0_y[4], rpr_base_frame_xx[4],
-            rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4],
-            rpr_base_point_y[4], rpr_branch_1[4], rpr_g_r0_x[4], rpr_g_r0_y[4], rpr_h_1_x[4],
-            rpr_h_1_y[4], rpr_h_2_x[4], rpr_h_2_y[4], rpr_link1_mass[4], rpr_link2_mass[4],
-            rpr_platform_point_x[4], rpr_platform_point_y[4];
+    planar_4rpr_free_real rpr_J_group_1_in_axes1_zz[4], rpr_acc_2_t[4], rpr_acc_2_t_2[4],
+            rpr_base_frame_xx[4], rpr_base_frame_xy[4], rpr_base_frame_yx[4], rpr_base_frame_yy[4],
+            rpr_base_point_x[4], rpr_base_point_y[4], rpr_branch_1[4], rpr_h_1_in_spec1_x[4],
+            rpr_h_1_in_spec1_y[4], rpr_h_2_in_spec1_x[4], rpr_h_2_in_spec1_y[4], rpr_link1_mass[4],
+            rpr_link2_mass[4], rpr_platform_point_x[4], rpr_platform_point_y[4], rpr_potential_t[4],
+            rpr_potential_t_2[4];
     /* 1 legs of type rpr_leg4 */
-    planar_4rpr_free_real rpr_leg4_J_group_1_zz[1], rpr_leg4_b_r0_x[1], rpr_leg4_b_r0_y[1],
-            rpr_leg4_base_frame_xx[1], rpr_leg4_base_frame_xy[1], rpr_leg4_base_frame_yx[1],
-            rpr_leg4_base_frame_yy[1], rpr_leg4_base_point_x[1], rpr_leg4_base_point_y[1],
-            rpr_leg4_branch_1[1], rpr_leg4_g_r0_x[1], rpr_leg4_g_r0_y[1], rpr_leg4_h_1_x[1],
-            rpr_leg4_h_1_y[1], rpr_leg4_h_2_x[1], rpr_leg4_h_2_y[1], rpr_leg4_link1_mass[1],
-            rpr_leg4_link2_mass[1], rpr_leg4_platform_point_x[1], rpr_leg4_platform_point_y[1];
-    planar_4rpr_free_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
-            h_star_y, m_star;
+    planar_4rpr_free_real rpr_leg4_J_group_1_in_axes1_zz[1], rpr_leg4_acc_2_t[1],
+            rpr_leg4_acc_2_t_2[1], rpr_leg4_base_frame_xx[1], rpr_leg4_base_frame_xy[1],
+            rpr_leg4_base_frame_yx[1], rpr_leg4_base_frame_yy[1], rpr_leg4_base_point_x[1],
+            rpr_leg4_base_point_y[1], rpr_leg4_branch_1[1], rpr_leg4_h_1_in_spec1_x[1],
+            rpr_leg4_h_1_in_spec1_y[1], rpr_leg4_h_2_in_spec1_x[1], rpr_leg4_h_2_in_spec1_y[1],
+            rpr_leg4_link1_mass[1], rpr_leg4_link2_mass[1], rpr_leg4_platform_point_x[1],
+            rpr_leg4_platform_point_y[1], rpr_leg4_potential_t[1], rpr_leg4_potential_t_2[1];
+    planar_4rpr_free_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
+            gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star;
 } planar_4rpr_free_model;
 
 extern const planar_4rpr_free_params planar_4rpr_free_default_params;

@@ -380,7 +380,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -554,23 +554,27 @@ def _prepare(p):
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
+    # (rpr-h_1) first moment of link 1 about the origin of link 1
+    rpr_h_1_in_spec1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
+    rpr_h_1_in_spec1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
     # (rpr-h_2) first moment of link 2 about the connection point
-    rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
-    rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (rpr-J_1) inertia tensor of link 1 about the origin of link 1
-    rpr_J_1_t = (
+    rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
+    rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
+    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+    rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rpr_J_group_1_t = (
     rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
         rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
     )
-    # (rpr-J_2) inertia tensor of link 2 about the connection point
-    rpr_J_2_t = (
+    rpr_J_group_1_t_2 = (
     rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
         rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y
     )
-    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
-    rpr_J_group_1_zz = (
-    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_1_t*rpr_link1_mass +
-        rpr_J_2_t*rpr_link2_mass
+    rpr_J_group_1_in_axes1_zz = (
+    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_group_1_t*rpr_link1_mass +
+        rpr_J_group_1_t_2*rpr_link2_mass
     )
     # (h_star) first moment about the platform origin
     rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x
@@ -580,39 +584,37 @@ def _prepare(p):
     rpr_J_star_t_2 = rpr_J_star_t + rpr_platform_point_x*rpr_platform_point_x
     rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass
     rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass
-    # (rpr-h_1) first moment of link 1 about the origin of link 1
-    rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
-    rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
-    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
     # (potential) potential energy
-    rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
-    total_rpr_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
-    total_rpr_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
-    total_rpr_xx = np.sum(np.broadcast_to(rpr_J_star_t_3, _rpr))
-    total_rpr_zz = np.sum(np.broadcast_to(rpr_J_star_t_4, _rpr))
-    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
-    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
+    rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    m_star_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    h_star_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
+    h_star_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
+    J_star_rpr_in_platform_xx = np.sum(np.broadcast_to(rpr_J_star_t_3, _rpr))
+    J_star_rpr_in_platform_zz = np.sum(np.broadcast_to(rpr_J_star_t_4, _rpr))
+    b_c_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
+    b_c_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
+    # (rpr_leg4-h_1) first moment of link 1 about the origin of link 1
+    rpr_leg4_h_1_in_spec1_x = rpr_leg4_link1_centre_of_mass_x*rpr_leg4_link1_mass
+    rpr_leg4_h_1_in_spec1_y = rpr_leg4_link1_centre_of_mass_y*rpr_leg4_link1_mass
     # (rpr_leg4-h_2) first moment of link 2 about the connection point
-    rpr_leg4_h_2_x = rpr_leg4_link2_centre_of_mass_x*rpr_leg4_link2_mass
-    rpr_leg4_h_2_y = rpr_leg4_link2_centre_of_mass_y*rpr_leg4_link2_mass
-    # (rpr_leg4-J_1) inertia tensor of link 1 about the origin of link 1
-    rpr_leg4_J_1_t = (
+    rpr_leg4_h_2_in_spec1_x = rpr_leg4_link2_centre_of_mass_x*rpr_leg4_link2_mass
+    rpr_leg4_h_2_in_spec1_y = rpr_leg4_link2_centre_of_mass_y*rpr_leg4_link2_mass
+    # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
+    rpr_leg4_acc_2_t = gravity_x*rpr_leg4_base_frame_xx + gravity_y*rpr_leg4_base_frame_yx
+    rpr_leg4_acc_2_t_2 = gravity_x*rpr_leg4_base_frame_xy + gravity_y*rpr_leg4_base_frame_yy
+    # (rpr_leg4-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rpr_leg4_J_group_1_t = (
     rpr_leg4_link1_centre_of_mass_x*rpr_leg4_link1_centre_of_mass_x +
         rpr_leg4_link1_centre_of_mass_y*rpr_leg4_link1_centre_of_mass_y
     )
-    # (rpr_leg4-J_2) inertia tensor of link 2 about the connection point
-    rpr_leg4_J_2_t = (
+    rpr_leg4_J_group_1_t_2 = (
     rpr_leg4_link2_centre_of_mass_x*rpr_leg4_link2_centre_of_mass_x +
         rpr_leg4_link2_centre_of_mass_y*rpr_leg4_link2_centre_of_mass_y
     )
-    # (rpr_leg4-J_group_1) inertia of the links that turn with link 1, each about its reference point
-    rpr_leg4_J_group_1_zz = (
-    rpr_leg4_link1_inertia_zz + rpr_leg4_link2_inertia_zz + rpr_leg4_J_1_t*rpr_leg4_link1_mass +
-        rpr_leg4_J_2_t*rpr_leg4_link2_mass
+    rpr_leg4_J_group_1_in_axes1_zz = (
+    rpr_leg4_link1_inertia_zz + rpr_leg4_link2_inertia_zz +
+        rpr_leg4_J_group_1_t*rpr_leg4_link1_mass + rpr_leg4_J_group_1_t_2*rpr_leg4_link2_mass
     )
     # (h_star) first moment about the platform origin
     rpr_leg4_h_star_t = rpr_leg4_link2_mass*rpr_leg4_platform_point_x
@@ -622,91 +624,93 @@ def _prepare(p):
     rpr_leg4_J_star_t_2 = rpr_leg4_J_star_t + rpr_leg4_platform_point_x*rpr_leg4_platform_point_x
     rpr_leg4_J_star_t_3 = rpr_leg4_J_star_t*rpr_leg4_link2_mass
     rpr_leg4_J_star_t_4 = rpr_leg4_J_star_t_2*rpr_leg4_link2_mass
-    # (rpr_leg4-h_1) first moment of link 1 about the origin of link 1
-    rpr_leg4_h_1_x = rpr_leg4_link1_centre_of_mass_x*rpr_leg4_link1_mass
-    rpr_leg4_h_1_y = rpr_leg4_link1_centre_of_mass_y*rpr_leg4_link1_mass
-    # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_leg4_g_r0_x = gravity_x*rpr_leg4_base_frame_xx + gravity_y*rpr_leg4_base_frame_yx
-    rpr_leg4_g_r0_y = gravity_x*rpr_leg4_base_frame_xy + gravity_y*rpr_leg4_base_frame_yy
     # (potential) potential energy
-    rpr_leg4_b_r0_x = (
+    rpr_leg4_potential_t = (
     rpr_leg4_base_frame_xx*rpr_leg4_base_point_x + rpr_leg4_base_frame_yx*rpr_leg4_base_point_y
     )
-    rpr_leg4_b_r0_y = (
+    rpr_leg4_potential_t_2 = (
     rpr_leg4_base_frame_xy*rpr_leg4_base_point_x + rpr_leg4_base_frame_yy*rpr_leg4_base_point_y
     )
-    total_rpr_leg4 = np.sum(np.broadcast_to(rpr_leg4_link2_mass, _rpr_leg4))
-    total_rpr_leg4_x = np.sum(np.broadcast_to(rpr_leg4_h_star_t, _rpr_leg4))
-    total_rpr_leg4_y = np.sum(np.broadcast_to(rpr_leg4_h_star_t_2, _rpr_leg4))
-    total_rpr_leg4_xx = np.sum(np.broadcast_to(rpr_leg4_J_star_t_3, _rpr_leg4))
-    total_rpr_leg4_zz = np.sum(np.broadcast_to(rpr_leg4_J_star_t_4, _rpr_leg4))
-    total_rpr_leg4_x_2 = np.sum(np.broadcast_to(rpr_leg4_platform_point_x, _rpr_leg4))
-    total_rpr_leg4_y_2 = np.sum(np.broadcast_to(rpr_leg4_platform_point_y, _rpr_leg4))
+    m_star_rpr_leg4 = np.sum(np.broadcast_to(rpr_leg4_link2_mass, _rpr_leg4))
+    h_star_rpr_leg4_in_platform_x = np.sum(np.broadcast_to(rpr_leg4_h_star_t, _rpr_leg4))
+    h_star_rpr_leg4_in_platform_y = np.sum(np.broadcast_to(rpr_leg4_h_star_t_2, _rpr_leg4))
+    J_star_rpr_leg4_in_platform_xx = np.sum(np.broadcast_to(rpr_leg4_J_star_t_3, _rpr_leg4))
+    J_star_rpr_leg4_in_platform_zz = np.sum(np.broadcast_to(rpr_leg4_J_star_t_4, _rpr_leg4))
+    b_c_rpr_leg4_in_platform_x = np.sum(np.broadcast_to(rpr_leg4_platform_point_x, _rpr_leg4))
+    b_c_rpr_leg4_in_platform_y = np.sum(np.broadcast_to(rpr_leg4_platform_point_y, _rpr_leg4))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_rpr + total_rpr_leg4
+    m_star = m_star_rpr + m_star_rpr_leg4 + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_rpr_leg4_x + total_rpr_x
-    h_star_y = h_star_t_2 + total_rpr_leg4_y + total_rpr_y
+    h_star_in_platform_x = h_star_rpr_in_platform_x + h_star_rpr_leg4_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_rpr_in_platform_y + h_star_rpr_leg4_in_platform_y + h_star_t_2
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = J_star_t_3 + total_rpr_leg4_xx + total_rpr_xx
-    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rpr_leg4_zz - total_rpr_zz
-    J_star_t_6 = J_star_t_5 - J_star_xx
+    J_star_in_platform_xx = (
+    J_star_rpr_in_platform_xx + J_star_rpr_leg4_in_platform_xx + J_star_t_3
+    )
+    J_star_t_5 = (
+    J_star_in_platform_xx - J_star_rpr_in_platform_zz - J_star_rpr_leg4_in_platform_zz -
+        J_star_t_4 - platform_inertia_zz
+    )
+    J_star_zz = J_star_in_platform_xx - J_star_t_5
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.25*total_rpr_leg4_x_2 + 0.25*total_rpr_x_2
-    b_c_y = 0.25*total_rpr_leg4_y_2 + 0.25*total_rpr_y_2
+    b_c_in_platform_x = 0.25*b_c_rpr_in_platform_x + 0.25*b_c_rpr_leg4_in_platform_x
+    b_c_in_platform_y = 0.25*b_c_rpr_in_platform_y + 0.25*b_c_rpr_leg4_in_platform_y
     return {
         "dynamics": (
-        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x,
+                h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rpr_leg4,
-        (rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
                     rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_x, rpr_leg4_h_1_y,
-                    rpr_leg4_h_2_x, rpr_leg4_h_2_y, rpr_leg4_platform_point_x,
-                    rpr_leg4_platform_point_y,),
-                ),
-            ),
-        ),
-        "M": (
-        (J_star_t_6, h_star_x, h_star_y, m_star,),
-            (
-                (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,),
-                ),
-                (_rpr_leg4,
-        (rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
-                    rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_2_x, rpr_leg4_h_2_y,
+                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+                    rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
                     rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
                 ),
             ),
         ),
-        "Z": (
-        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
+        "M": (
+        (J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
                     rpr_platform_point_y,),
                 ),
                 (_rpr_leg4,
-        (rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
                     rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_x, rpr_leg4_h_1_y,
-                    rpr_leg4_h_2_x, rpr_leg4_h_2_y, rpr_leg4_platform_point_x,
+                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_2_in_spec1_x,
+                    rpr_leg4_h_2_in_spec1_y, rpr_leg4_platform_point_x,
                     rpr_leg4_platform_point_y,),
+                ),
+            ),
+        ),
+        "Z": (
+        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,),
+            (
+                (_rpr,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,),
+                ),
+                (_rpr_leg4,
+        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+                    rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
+                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+                    rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+                    rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
                 ),
             ),
         ),
@@ -721,20 +725,22 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
                 (_rpr_leg4,
-        (rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
-                    rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_g_r0_x, rpr_leg4_g_r0_y,
-                    rpr_leg4_h_1_x, rpr_leg4_h_1_y, rpr_leg4_h_2_x, rpr_leg4_h_2_y,
-                    rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
+        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2,
+                    rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
+                    rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
+                    rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
+                    rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_platform_point_x,
+                    rpr_leg4_platform_point_y,),
                 ),
             ),
         ),
@@ -787,40 +793,44 @@ def _prepare(p):
         (),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
                 (_rpr_leg4,
-        (rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
-                    rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_g_r0_x, rpr_leg4_g_r0_y,
-                    rpr_leg4_h_1_x, rpr_leg4_h_1_y, rpr_leg4_h_2_x, rpr_leg4_h_2_y,
-                    rpr_leg4_link2_mass, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
+        (rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2,
+                    rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
+                    rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
+                    rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
+                    rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_link2_mass,
+                    rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,),
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_link1_mass, rpr_platform_point_x,
+                    rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,),
                 ),
                 (_rpr_leg4,
-        (rpr_leg4_b_r0_x, rpr_leg4_b_r0_y, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+        (rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
                     rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_g_r0_x, rpr_leg4_g_r0_y,
-                    rpr_leg4_h_1_x, rpr_leg4_h_1_y, rpr_leg4_h_2_x, rpr_leg4_h_2_y,
-                    rpr_leg4_link1_mass, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,),
+                    rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+                    rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+                    rpr_leg4_link1_mass, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
+                    rpr_leg4_potential_t, rpr_leg4_potential_t_2,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y,),
+        (b_c_in_platform_x, b_c_in_platform_y,),
             (
                 (_rpr,
         (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1292,7 +1302,10 @@ def _run_dynamics(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    (
+    J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,
+        m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1312,257 +1325,289 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_x,
-            rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
-        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_yy = (
-        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
-        )
-        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rpr_Q_t = 0.5*rpr_d_c_yy
-        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
-        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
-        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
-        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
-        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
-        # (M_ta) coupling block of M
-        rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x
-        rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x
-        # (M_aa) rotational block of M
-        rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-u_1) centripetal acceleration of the connection point
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
-        rpr_u_1_t_2 = omega_z*rpr_S_dot_t
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
-        # (rpr-u_1) centripetal acceleration of the connection point
-        rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2
+        rpr_u_1_y = -omega_z*rpr_S_dot_t
+        rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
         # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rpr_rel_o_y = rpr_u_1_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y
-        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o
-        # (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y
-        rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y
+        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y
         # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t - rpr_axis_x_y*rpr_u_1_t_2
-        rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
+        rpr_acc_2_o_in_axes1_x = (
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
+        )
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_in_axes1_x = (
+        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        )
         # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_o_z = (
-        rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x + rpr_g_tip_x*rpr_h_1_y -
-            rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x
+        rpr_mu_1_o_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+        )
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_in_axes1_xy = inv_rpr_root_1*rpr_h_2_in_spec1_y
+        rpr_d_c_in_axes1_yy = (
+        -inv_rpr_root_1*rpr_h_2_in_spec1_x - inv_rpr_root_1*(rpr_h_2_in_spec1_x +
+            inv_rpr_root_1*rpr_J_group_1_in_axes1_zz)
         )
         # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z - rpr_h_2_x*rpr_qdd_1_o
+        rpr_c_o_in_axes1_y = (
+        -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+            rpr_h_2_in_spec1_x*rpr_qdd_1_o
+        )
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
+        rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t - axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy
+        rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t + axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy
+        rpr_Q_xx = -2.0*axis_x_rpr_axes1_y*rpr_Q_t_2
+        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
+        rpr_Q_yy = -2.0*axis_x_rpr_axes1_x*rpr_Q_t_3
         # (rpr-U) velocity and gravity terms of the leg force
-        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
-        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        rpr_U_x = (
+        axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x + axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y
+        )
+        rpr_U_y = (
+        axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x - axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y
+        )
+        # (M_ta) coupling block of M
+        rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y
+        rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y
+        # (M_aa) rotational block of M
+        rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y
         # (Z_a) rotational part of Z
-        rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y
+        rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
+        rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
-            rpr_U_in_base_x, rpr_U_in_base_y, rpr_Z_a_t,
+        rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x, rpr_U_y,
+            rpr_Z_a_t,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     (
-    total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz,
-        total_rpr_x, total_rpr_y, total_rpr_z,
+    M_tt_rpr_xx, M_tt_rpr_xy, M_tt_rpr_yy, M_ta_rpr_xz, M_ta_rpr_yz, M_aa_rpr_zz, Z_t_rpr_x,
+        Z_t_rpr_y, Z_a_rpr_z,
     ) = sums
     sums = [0.0] * 9
     for leg, k in legs[1]:
         (
-        rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
             rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_x, rpr_leg4_h_1_y,
-            rpr_leg4_h_2_x, rpr_leg4_h_2_y, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
+            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+            rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+            rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
-        rpr_leg4_q_in_base_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
-        rpr_leg4_q_in_base_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
-        rpr_leg4_S_x = rpr_leg4_q_in_base_x + t_x - rpr_leg4_base_point_x
-        rpr_leg4_S_y = rpr_leg4_q_in_base_y + t_y - rpr_leg4_base_point_y
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
+        rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
+        rpr_leg4_q_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
+        rpr_leg4_S_x = rpr_leg4_q_x + t_x - rpr_leg4_base_point_x
+        rpr_leg4_S_y = rpr_leg4_q_y + t_y - rpr_leg4_base_point_y
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
-        rpr_leg4_axis_x_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
-        rpr_leg4_axis_x_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
-        # (rpr_leg4-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_leg4_d_phi_2_t = inv_rpr_leg4_root_1*rpr_leg4_h_2_y
-        # (rpr_leg4-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_leg4_d_c_yy = (
-        -inv_rpr_leg4_root_1*rpr_leg4_h_2_x - inv_rpr_leg4_root_1*(rpr_leg4_h_2_x +
-            inv_rpr_leg4_root_1*rpr_leg4_J_group_1_zz)
-        )
-        # (rpr_leg4-Q) inertia of the leg at the connection point, without the mass gathered there
-        rpr_leg4_Q_t = 0.5*rpr_leg4_d_c_yy
-        rpr_leg4_Q_t_2 = rpr_leg4_Q_t*rpr_leg4_axis_x_y - rpr_leg4_axis_x_x*rpr_leg4_d_phi_2_t
-        rpr_leg4_Q_t_3 = rpr_leg4_Q_t*rpr_leg4_axis_x_x + rpr_leg4_axis_x_y*rpr_leg4_d_phi_2_t
-        rpr_leg4_Q_t_4 = 2.0*rpr_leg4_Q_t_2*rpr_leg4_axis_x_y
-        rpr_leg4_Q_t_5 = rpr_leg4_Q_t_2*rpr_leg4_axis_x_x + rpr_leg4_Q_t_3*rpr_leg4_axis_x_y
-        rpr_leg4_Q_t_6 = 2.0*rpr_leg4_Q_t_3*rpr_leg4_axis_x_x
-        # (M_ta) coupling block of M
-        rpr_leg4_M_ta_t = (
-        rpr_leg4_Q_t_4*rpr_leg4_q_in_base_y + rpr_leg4_Q_t_5*rpr_leg4_q_in_base_x
-        )
-        rpr_leg4_M_ta_t_2 = (
-        rpr_leg4_Q_t_5*rpr_leg4_q_in_base_y + rpr_leg4_Q_t_6*rpr_leg4_q_in_base_x
-        )
-        # (M_aa) rotational block of M
-        rpr_leg4_M_aa_t = (
-        rpr_leg4_M_ta_t*rpr_leg4_q_in_base_y + rpr_leg4_M_ta_t_2*rpr_leg4_q_in_base_x
-        )
         # (rpr_leg4-S_dot) velocity of the connection point
-        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_in_base_y
-        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_in_base_x
+        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
+        axis_x_rpr_leg4_axes1_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
+        axis_x_rpr_leg4_axes1_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
+        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_y
+        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_x
         rpr_leg4_S_dot_x = t_dot_x - rpr_leg4_S_dot_t
         rpr_leg4_S_dot_y = rpr_leg4_S_dot_t_2 + t_dot_y
-        rpr_leg4_S_dot_tip_x = (
-        rpr_leg4_S_dot_x*rpr_leg4_axis_x_x + rpr_leg4_S_dot_y*rpr_leg4_axis_x_y
+        rpr_leg4_S_dot_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_y
         )
         # (rpr_leg4-qd_1) rate of joint 1
         rpr_leg4_qd_1 = (
-        inv_rpr_leg4_root_1*(rpr_leg4_S_dot_y*rpr_leg4_axis_x_x -
-            rpr_leg4_S_dot_x*rpr_leg4_axis_x_y)
+        inv_rpr_leg4_root_1*(axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_y -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_x)
         )
+        # (rpr_leg4-W_1) centripetal tensor of link 1
+        rpr_leg4_W_1_in_axes1_xx = -rpr_leg4_qd_1*rpr_leg4_qd_1
         # (rpr_leg4-u_1) centripetal acceleration of the connection point
         rpr_leg4_u_1_t = omega_z*rpr_leg4_S_dot_t_2
-        rpr_leg4_u_1_t_2 = omega_z*rpr_leg4_S_dot_t
-        # (rpr_leg4-W_1) centripetal tensor of link 1
-        rpr_leg4_W_1_t = rpr_leg4_qd_1*rpr_leg4_qd_1
-        # (rpr_leg4-u_1) centripetal acceleration of the connection point
-        rpr_leg4_u_1_tip_y = rpr_leg4_axis_x_y*rpr_leg4_u_1_t - rpr_leg4_axis_x_x*rpr_leg4_u_1_t_2
-        # (rpr_leg4-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rpr_leg4_rel_o_y = rpr_leg4_u_1_tip_y - 2.0*rpr_leg4_S_dot_tip_x*rpr_leg4_qd_1
-        # (rpr_leg4-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_leg4_qdd_1_o = inv_rpr_leg4_root_1*rpr_leg4_rel_o_y
-        # (rpr_leg4-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_leg4_phi_2_o_x = -rpr_leg4_W_1_t*rpr_leg4_h_2_x - rpr_leg4_h_2_y*rpr_leg4_qdd_1_o
-        # (rpr_leg4-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        rpr_leg4_g_tip_x = gravity_x*rpr_leg4_axis_x_x + gravity_y*rpr_leg4_axis_x_y
-        rpr_leg4_g_tip_y = gravity_y*rpr_leg4_axis_x_x - gravity_x*rpr_leg4_axis_x_y
-        # (rpr_leg4-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rpr_leg4_acc_2_o_x = (
-        -rpr_leg4_g_tip_x - rpr_leg4_axis_x_x*rpr_leg4_u_1_t - rpr_leg4_axis_x_y*rpr_leg4_u_1_t_2
+        rpr_leg4_u_1_y = -omega_z*rpr_leg4_S_dot_t
+        rpr_leg4_u_1_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_u_1_y + axis_x_rpr_leg4_axes1_y*rpr_leg4_u_1_t
         )
-        rpr_leg4_acc_2_o_y = rpr_leg4_u_1_tip_y - rpr_leg4_g_tip_y
+        # (rpr_leg4-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rpr_leg4_rel_o_in_axes1_y = (
+        rpr_leg4_u_1_in_axes1_y - 2.0*rpr_leg4_S_dot_in_axes1_x*rpr_leg4_qd_1
+        )
+        # (rpr_leg4-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rpr_leg4_qdd_1_o = inv_rpr_leg4_root_1*rpr_leg4_rel_o_in_axes1_y
+        # (rpr_leg4-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rpr_leg4_g_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*gravity_x + axis_x_rpr_leg4_axes1_y*gravity_y
+        )
+        rpr_leg4_g_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*gravity_y - axis_x_rpr_leg4_axes1_y*gravity_x
+        )
+        rpr_leg4_acc_2_o_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_y*rpr_leg4_u_1_y - rpr_leg4_g_in_axes1_x -
+            axis_x_rpr_leg4_axes1_x*rpr_leg4_u_1_t
+        )
+        rpr_leg4_acc_2_o_in_axes1_y = rpr_leg4_u_1_in_axes1_y - rpr_leg4_g_in_axes1_y
+        # (rpr_leg4-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_leg4_phi_2_o_in_axes1_x = (
+        rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_x -
+            rpr_leg4_h_2_in_spec1_y*rpr_leg4_qdd_1_o
+        )
         # (rpr_leg4-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rpr_leg4_mu_1_o_z = (
-        rpr_leg4_J_group_1_zz*rpr_leg4_qdd_1_o + rpr_leg4_acc_2_o_y*rpr_leg4_h_2_x +
-            rpr_leg4_g_tip_x*rpr_leg4_h_1_y - rpr_leg4_acc_2_o_x*rpr_leg4_h_2_y -
-            rpr_leg4_g_tip_y*rpr_leg4_h_1_x
+        rpr_leg4_mu_1_o_in_axes1_z = (
+        rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_qdd_1_o +
+            rpr_leg4_acc_2_o_in_axes1_y*rpr_leg4_h_2_in_spec1_x +
+            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y -
+            rpr_leg4_acc_2_o_in_axes1_x*rpr_leg4_h_2_in_spec1_y -
+            rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x
+        )
+        # (rpr_leg4-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_leg4_d_c_in_axes1_xy = inv_rpr_leg4_root_1*rpr_leg4_h_2_in_spec1_y
+        rpr_leg4_d_c_in_axes1_yy = (
+        -inv_rpr_leg4_root_1*rpr_leg4_h_2_in_spec1_x -
+            inv_rpr_leg4_root_1*(rpr_leg4_h_2_in_spec1_x +
+            inv_rpr_leg4_root_1*rpr_leg4_J_group_1_in_axes1_zz)
         )
         # (rpr_leg4-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_leg4_c_o_y = (
-        rpr_leg4_W_1_t*rpr_leg4_h_2_y - inv_rpr_leg4_root_1*rpr_leg4_mu_1_o_z -
-            rpr_leg4_h_2_x*rpr_leg4_qdd_1_o
+        rpr_leg4_c_o_in_axes1_y = (
+        -inv_rpr_leg4_root_1*rpr_leg4_mu_1_o_in_axes1_z -
+            rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_y -
+            rpr_leg4_h_2_in_spec1_x*rpr_leg4_qdd_1_o
         )
+        # (rpr_leg4-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_leg4_Q_t = 0.5*rpr_leg4_d_c_in_axes1_yy
+        rpr_leg4_Q_t_2 = (
+        axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t - axis_x_rpr_leg4_axes1_x*rpr_leg4_d_c_in_axes1_xy
+        )
+        rpr_leg4_Q_t_3 = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t + axis_x_rpr_leg4_axes1_y*rpr_leg4_d_c_in_axes1_xy
+        )
+        rpr_leg4_Q_xx = -2.0*axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_2
+        rpr_leg4_Q_xy = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_2 + axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_3
+        )
+        rpr_leg4_Q_yy = -2.0*axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_3
         # (rpr_leg4-U) velocity and gravity terms of the leg force
-        rpr_leg4_U_in_base_x = (
-        rpr_leg4_axis_x_x*rpr_leg4_phi_2_o_x + rpr_leg4_axis_x_y*rpr_leg4_c_o_y
+        rpr_leg4_U_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_phi_2_o_in_axes1_x +
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_c_o_in_axes1_y
         )
-        rpr_leg4_U_in_base_y = (
-        rpr_leg4_axis_x_y*rpr_leg4_phi_2_o_x - rpr_leg4_axis_x_x*rpr_leg4_c_o_y
+        rpr_leg4_U_y = (
+        axis_x_rpr_leg4_axes1_y*rpr_leg4_phi_2_o_in_axes1_x -
+            axis_x_rpr_leg4_axes1_x*rpr_leg4_c_o_in_axes1_y
         )
+        # (M_ta) coupling block of M
+        rpr_leg4_M_ta_t = rpr_leg4_Q_xy*rpr_leg4_q_x - rpr_leg4_Q_xx*rpr_leg4_q_y
+        rpr_leg4_M_ta_t_2 = rpr_leg4_Q_yy*rpr_leg4_q_x - rpr_leg4_Q_xy*rpr_leg4_q_y
+        # (M_aa) rotational block of M
+        rpr_leg4_M_aa_t = rpr_leg4_M_ta_t_2*rpr_leg4_q_x - rpr_leg4_M_ta_t*rpr_leg4_q_y
         # (Z_a) rotational part of Z
-        rpr_leg4_Z_a_t = (
-        rpr_leg4_U_in_base_y*rpr_leg4_q_in_base_x - rpr_leg4_U_in_base_x*rpr_leg4_q_in_base_y
-        )
+        rpr_leg4_Z_a_t = rpr_leg4_U_y*rpr_leg4_q_x - rpr_leg4_U_x*rpr_leg4_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_leg4_Q_t_4, rpr_leg4_Q_t_5, rpr_leg4_Q_t_6, rpr_leg4_M_ta_t, rpr_leg4_M_ta_t_2,
-            rpr_leg4_M_aa_t, rpr_leg4_U_in_base_x, rpr_leg4_U_in_base_y, rpr_leg4_Z_a_t,
+        rpr_leg4_Q_xx, rpr_leg4_Q_xy, rpr_leg4_Q_yy, rpr_leg4_M_ta_t, rpr_leg4_M_ta_t_2,
+            rpr_leg4_M_aa_t, rpr_leg4_U_x, rpr_leg4_U_y, rpr_leg4_Z_a_t,
         ))
     (
-    total_rpr_leg4_xx, total_rpr_leg4_xy, total_rpr_leg4_yy, total_rpr_leg4_xz, total_rpr_leg4_yz,
-        total_rpr_leg4_zz, total_rpr_leg4_x, total_rpr_leg4_y, total_rpr_leg4_z,
+    M_tt_rpr_leg4_xx, M_tt_rpr_leg4_xy, M_tt_rpr_leg4_yy, M_ta_rpr_leg4_xz, M_ta_rpr_leg4_yz,
+        M_aa_rpr_leg4_zz, Z_t_rpr_leg4_x, Z_t_rpr_leg4_y, Z_a_rpr_leg4_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rpr_leg4_xx - total_rpr_xx
-    M_tt_xy = total_rpr_leg4_xy + total_rpr_xy
-    M_tt_yy = m_star - total_rpr_leg4_yy - total_rpr_yy
+    M_tt_xx = M_tt_rpr_leg4_xx + M_tt_rpr_xx + m_star
+    M_tt_xy = M_tt_rpr_leg4_xy + M_tt_rpr_xy
+    M_tt_yy = M_tt_rpr_leg4_yy + M_tt_rpr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = total_rpr_leg4_xz + total_rpr_xz - h_star_in_base_y
-    M_ta_yz = h_star_in_base_x - total_rpr_leg4_yz - total_rpr_yz
+    M_ta_xz = M_ta_rpr_leg4_xz + M_ta_rpr_xz - h_star_y
+    M_ta_yz = M_ta_rpr_leg4_yz + M_ta_rpr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = -J_star_t_6 - total_rpr_leg4_zz - total_rpr_zz
+    M_aa_zz = J_star_zz + M_aa_rpr_leg4_zz + M_aa_rpr_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rpr_leg4_x + total_rpr_x
-    Z_t_y = Z_p_y + total_rpr_leg4_y + total_rpr_y
+    Z_t_x = Z_p_x + Z_t_rpr_leg4_x + Z_t_rpr_x
+    Z_t_y = Z_p_y + Z_t_rpr_leg4_y + Z_t_rpr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_rpr_leg4_z + total_rpr_z - Z_q_t
+    Z_a_z = Z_a_rpr_leg4_z + Z_a_rpr_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
     out_M[4] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[6] = M_ta_xz
     out_M[5] = M_ta_yz
     out_M[7] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[8] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_M, out_Z, out_H,)
 
@@ -1573,7 +1618,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_6, h_star_x, h_star_y, m_star = shared
+    J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1585,137 +1630,141 @@ def _run_M(m, X):
     ok = True
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_x,
-            rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_yy = (
-        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
+        rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y
+        rpr_d_c_in_axes1_yy = (
+        -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y - rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
+            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y)
         )
         # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rpr_Q_t = 0.5*rpr_d_c_yy
-        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
-        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
-        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
-        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
-        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
+        rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x
+        rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y
+        rpr_Q_xx = -2.0*rpr_Q_t_2*rpr_w_2_y
+        rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y
+        rpr_Q_yy = -2.0*rpr_Q_t_3*rpr_w_2_x
         # (M_ta) coupling block of M
-        rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x
-        rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x
+        rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y
+        rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y
         # (M_aa) rotational block of M
-        rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x
+        rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
+        rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
         ))
-    total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz = sums
+    M_tt_rpr_xx, M_tt_rpr_xy, M_tt_rpr_yy, M_ta_rpr_xz, M_ta_rpr_yz, M_aa_rpr_zz = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
             rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_2_x, rpr_leg4_h_2_y,
-            rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
+            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_2_in_spec1_x,
+            rpr_leg4_h_2_in_spec1_y, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
-        rpr_leg4_q_in_base_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
-        rpr_leg4_q_in_base_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
-        rpr_leg4_S_x = rpr_leg4_q_in_base_x + t_x - rpr_leg4_base_point_x
-        rpr_leg4_S_y = rpr_leg4_q_in_base_y + t_y - rpr_leg4_base_point_y
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
+        rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
+        rpr_leg4_q_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
+        rpr_leg4_S_x = rpr_leg4_q_x + t_x - rpr_leg4_base_point_x
+        rpr_leg4_S_y = rpr_leg4_q_y + t_y - rpr_leg4_base_point_y
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
         # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
-        rpr_leg4_axis_x_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
-        rpr_leg4_axis_x_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
-        # (rpr_leg4-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_leg4_d_phi_2_t = inv_rpr_leg4_root_1*rpr_leg4_h_2_y
+        rpr_leg4_w_1_in_axes1_y = 1.0/rpr_leg4_root_1
         # (rpr_leg4-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_leg4_d_c_yy = (
-        -inv_rpr_leg4_root_1*rpr_leg4_h_2_x - inv_rpr_leg4_root_1*(rpr_leg4_h_2_x +
-            inv_rpr_leg4_root_1*rpr_leg4_J_group_1_zz)
+        rpr_leg4_d_c_in_axes1_xy = rpr_leg4_h_2_in_spec1_y*rpr_leg4_w_1_in_axes1_y
+        rpr_leg4_d_c_in_axes1_yy = (
+        -rpr_leg4_h_2_in_spec1_x*rpr_leg4_w_1_in_axes1_y -
+            rpr_leg4_w_1_in_axes1_y*(rpr_leg4_h_2_in_spec1_x +
+            rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_w_1_in_axes1_y)
         )
         # (rpr_leg4-Q) inertia of the leg at the connection point, without the mass gathered there
-        rpr_leg4_Q_t = 0.5*rpr_leg4_d_c_yy
-        rpr_leg4_Q_t_2 = rpr_leg4_Q_t*rpr_leg4_axis_x_y - rpr_leg4_axis_x_x*rpr_leg4_d_phi_2_t
-        rpr_leg4_Q_t_3 = rpr_leg4_Q_t*rpr_leg4_axis_x_x + rpr_leg4_axis_x_y*rpr_leg4_d_phi_2_t
-        rpr_leg4_Q_t_4 = 2.0*rpr_leg4_Q_t_2*rpr_leg4_axis_x_y
-        rpr_leg4_Q_t_5 = rpr_leg4_Q_t_2*rpr_leg4_axis_x_x + rpr_leg4_Q_t_3*rpr_leg4_axis_x_y
-        rpr_leg4_Q_t_6 = 2.0*rpr_leg4_Q_t_3*rpr_leg4_axis_x_x
+        axis_x_rpr_leg4_axes1_x = rpr_leg4_S_x*rpr_leg4_w_1_in_axes1_y
+        axis_x_rpr_leg4_axes1_y = rpr_leg4_S_y*rpr_leg4_w_1_in_axes1_y
+        rpr_leg4_Q_t = 0.5*rpr_leg4_d_c_in_axes1_yy
+        rpr_leg4_Q_t_2 = (
+        axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t - axis_x_rpr_leg4_axes1_x*rpr_leg4_d_c_in_axes1_xy
+        )
+        rpr_leg4_Q_t_3 = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t + axis_x_rpr_leg4_axes1_y*rpr_leg4_d_c_in_axes1_xy
+        )
+        rpr_leg4_Q_xx = -2.0*axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_2
+        rpr_leg4_Q_xy = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_2 + axis_x_rpr_leg4_axes1_y*rpr_leg4_Q_t_3
+        )
+        rpr_leg4_Q_yy = -2.0*axis_x_rpr_leg4_axes1_x*rpr_leg4_Q_t_3
         # (M_ta) coupling block of M
-        rpr_leg4_M_ta_t = (
-        rpr_leg4_Q_t_4*rpr_leg4_q_in_base_y + rpr_leg4_Q_t_5*rpr_leg4_q_in_base_x
-        )
-        rpr_leg4_M_ta_t_2 = (
-        rpr_leg4_Q_t_5*rpr_leg4_q_in_base_y + rpr_leg4_Q_t_6*rpr_leg4_q_in_base_x
-        )
+        rpr_leg4_M_ta_t = rpr_leg4_Q_xy*rpr_leg4_q_x - rpr_leg4_Q_xx*rpr_leg4_q_y
+        rpr_leg4_M_ta_t_2 = rpr_leg4_Q_yy*rpr_leg4_q_x - rpr_leg4_Q_xy*rpr_leg4_q_y
         # (M_aa) rotational block of M
-        rpr_leg4_M_aa_t = (
-        rpr_leg4_M_ta_t*rpr_leg4_q_in_base_y + rpr_leg4_M_ta_t_2*rpr_leg4_q_in_base_x
-        )
+        rpr_leg4_M_aa_t = rpr_leg4_M_ta_t_2*rpr_leg4_q_x - rpr_leg4_M_ta_t*rpr_leg4_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_leg4_Q_t_4, rpr_leg4_Q_t_5, rpr_leg4_Q_t_6, rpr_leg4_M_ta_t, rpr_leg4_M_ta_t_2,
+        rpr_leg4_Q_xx, rpr_leg4_Q_xy, rpr_leg4_Q_yy, rpr_leg4_M_ta_t, rpr_leg4_M_ta_t_2,
             rpr_leg4_M_aa_t,
         ))
     (
-    total_rpr_leg4_xx, total_rpr_leg4_xy, total_rpr_leg4_yy, total_rpr_leg4_xz, total_rpr_leg4_yz,
-        total_rpr_leg4_zz,
+    M_tt_rpr_leg4_xx, M_tt_rpr_leg4_xy, M_tt_rpr_leg4_yy, M_ta_rpr_leg4_xz, M_ta_rpr_leg4_yz,
+        M_aa_rpr_leg4_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_rpr_leg4_xx - total_rpr_xx
-    M_tt_xy = total_rpr_leg4_xy + total_rpr_xy
-    M_tt_yy = m_star - total_rpr_leg4_yy - total_rpr_yy
+    M_tt_xx = M_tt_rpr_leg4_xx + M_tt_rpr_xx + m_star
+    M_tt_xy = M_tt_rpr_leg4_xy + M_tt_rpr_xy
+    M_tt_yy = M_tt_rpr_leg4_yy + M_tt_rpr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = total_rpr_leg4_xz + total_rpr_xz - h_star_in_base_y
-    M_ta_yz = h_star_in_base_x - total_rpr_leg4_yz - total_rpr_yz
+    M_ta_xz = M_ta_rpr_leg4_xz + M_ta_rpr_xz - h_star_y
+    M_ta_yz = M_ta_rpr_leg4_yz + M_ta_rpr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = -J_star_t_6 - total_rpr_leg4_zz - total_rpr_zz
+    M_aa_zz = J_star_zz + M_aa_rpr_leg4_zz + M_aa_rpr_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
     out_M[4] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[6] = M_ta_xz
     out_M[5] = M_ta_yz
     out_M[7] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[8] = M_aa_zz
     return ok, (out_M,)
 
@@ -1726,7 +1775,7 @@ def _run_Z(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
-    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y = shared
+    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1744,183 +1793,210 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_x,
-            rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-u_1) centripetal acceleration of the connection point
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
-        rpr_u_1_t_2 = omega_z*rpr_S_dot_t
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
-        # (rpr-u_1) centripetal acceleration of the connection point
-        rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2
+        rpr_u_1_y = -omega_z*rpr_S_dot_t
+        rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
         # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rpr_rel_o_y = rpr_u_1_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y
-        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o
-        # (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y
-        rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y
+        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y
         # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t - rpr_axis_x_y*rpr_u_1_t_2
-        rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
+        rpr_acc_2_o_in_axes1_x = (
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
+        )
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_in_axes1_x = (
+        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        )
         # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_o_z = (
-        rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x + rpr_g_tip_x*rpr_h_1_y -
-            rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x
+        rpr_mu_1_o_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z - rpr_h_2_x*rpr_qdd_1_o
+        rpr_c_o_in_axes1_y = (
+        -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+            rpr_h_2_in_spec1_x*rpr_qdd_1_o
+        )
         # (rpr-U) velocity and gravity terms of the leg force
-        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
-        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        rpr_U_x = (
+        axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x + axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y
+        )
+        rpr_U_y = (
+        axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x - axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y
+        )
         # (Z_a) rotational part of Z
-        rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y
+        rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_U_in_base_x, rpr_U_in_base_y, rpr_Z_a_t,
+        rpr_U_x, rpr_U_y, rpr_Z_a_t,
         ))
-    total_rpr_x, total_rpr_y, total_rpr_z = sums
+    Z_t_rpr_x, Z_t_rpr_y, Z_a_rpr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
             rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_x, rpr_leg4_h_1_y,
-            rpr_leg4_h_2_x, rpr_leg4_h_2_y, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
+            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+            rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+            rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
-        rpr_leg4_q_in_base_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
-        rpr_leg4_q_in_base_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
-        rpr_leg4_S_x = rpr_leg4_q_in_base_x + t_x - rpr_leg4_base_point_x
-        rpr_leg4_S_y = rpr_leg4_q_in_base_y + t_y - rpr_leg4_base_point_y
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
+        rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
+        rpr_leg4_q_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
+        rpr_leg4_S_x = rpr_leg4_q_x + t_x - rpr_leg4_base_point_x
+        rpr_leg4_S_y = rpr_leg4_q_y + t_y - rpr_leg4_base_point_y
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
-        rpr_leg4_axis_x_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
-        rpr_leg4_axis_x_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
         # (rpr_leg4-S_dot) velocity of the connection point
-        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_in_base_y
-        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_in_base_x
+        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
+        axis_x_rpr_leg4_axes1_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
+        axis_x_rpr_leg4_axes1_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
+        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_y
+        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_x
         rpr_leg4_S_dot_x = t_dot_x - rpr_leg4_S_dot_t
         rpr_leg4_S_dot_y = rpr_leg4_S_dot_t_2 + t_dot_y
-        rpr_leg4_S_dot_tip_x = (
-        rpr_leg4_S_dot_x*rpr_leg4_axis_x_x + rpr_leg4_S_dot_y*rpr_leg4_axis_x_y
+        rpr_leg4_S_dot_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_y
         )
         # (rpr_leg4-qd_1) rate of joint 1
         rpr_leg4_qd_1 = (
-        inv_rpr_leg4_root_1*(rpr_leg4_S_dot_y*rpr_leg4_axis_x_x -
-            rpr_leg4_S_dot_x*rpr_leg4_axis_x_y)
+        inv_rpr_leg4_root_1*(axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_y -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_x)
         )
+        # (rpr_leg4-W_1) centripetal tensor of link 1
+        rpr_leg4_W_1_in_axes1_xx = -rpr_leg4_qd_1*rpr_leg4_qd_1
         # (rpr_leg4-u_1) centripetal acceleration of the connection point
         rpr_leg4_u_1_t = omega_z*rpr_leg4_S_dot_t_2
-        rpr_leg4_u_1_t_2 = omega_z*rpr_leg4_S_dot_t
-        # (rpr_leg4-W_1) centripetal tensor of link 1
-        rpr_leg4_W_1_t = rpr_leg4_qd_1*rpr_leg4_qd_1
-        # (rpr_leg4-u_1) centripetal acceleration of the connection point
-        rpr_leg4_u_1_tip_y = rpr_leg4_axis_x_y*rpr_leg4_u_1_t - rpr_leg4_axis_x_x*rpr_leg4_u_1_t_2
-        # (rpr_leg4-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rpr_leg4_rel_o_y = rpr_leg4_u_1_tip_y - 2.0*rpr_leg4_S_dot_tip_x*rpr_leg4_qd_1
-        # (rpr_leg4-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_leg4_qdd_1_o = inv_rpr_leg4_root_1*rpr_leg4_rel_o_y
-        # (rpr_leg4-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_leg4_phi_2_o_x = -rpr_leg4_W_1_t*rpr_leg4_h_2_x - rpr_leg4_h_2_y*rpr_leg4_qdd_1_o
-        # (rpr_leg4-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        rpr_leg4_g_tip_x = gravity_x*rpr_leg4_axis_x_x + gravity_y*rpr_leg4_axis_x_y
-        rpr_leg4_g_tip_y = gravity_y*rpr_leg4_axis_x_x - gravity_x*rpr_leg4_axis_x_y
-        # (rpr_leg4-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rpr_leg4_acc_2_o_x = (
-        -rpr_leg4_g_tip_x - rpr_leg4_axis_x_x*rpr_leg4_u_1_t - rpr_leg4_axis_x_y*rpr_leg4_u_1_t_2
+        rpr_leg4_u_1_y = -omega_z*rpr_leg4_S_dot_t
+        rpr_leg4_u_1_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_u_1_y + axis_x_rpr_leg4_axes1_y*rpr_leg4_u_1_t
         )
-        rpr_leg4_acc_2_o_y = rpr_leg4_u_1_tip_y - rpr_leg4_g_tip_y
+        # (rpr_leg4-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        rpr_leg4_rel_o_in_axes1_y = (
+        rpr_leg4_u_1_in_axes1_y - 2.0*rpr_leg4_S_dot_in_axes1_x*rpr_leg4_qd_1
+        )
+        # (rpr_leg4-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rpr_leg4_qdd_1_o = inv_rpr_leg4_root_1*rpr_leg4_rel_o_in_axes1_y
+        # (rpr_leg4-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        rpr_leg4_g_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*gravity_x + axis_x_rpr_leg4_axes1_y*gravity_y
+        )
+        rpr_leg4_g_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*gravity_y - axis_x_rpr_leg4_axes1_y*gravity_x
+        )
+        rpr_leg4_acc_2_o_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_y*rpr_leg4_u_1_y - rpr_leg4_g_in_axes1_x -
+            axis_x_rpr_leg4_axes1_x*rpr_leg4_u_1_t
+        )
+        rpr_leg4_acc_2_o_in_axes1_y = rpr_leg4_u_1_in_axes1_y - rpr_leg4_g_in_axes1_y
+        # (rpr_leg4-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_leg4_phi_2_o_in_axes1_x = (
+        rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_x -
+            rpr_leg4_h_2_in_spec1_y*rpr_leg4_qdd_1_o
+        )
         # (rpr_leg4-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rpr_leg4_mu_1_o_z = (
-        rpr_leg4_J_group_1_zz*rpr_leg4_qdd_1_o + rpr_leg4_acc_2_o_y*rpr_leg4_h_2_x +
-            rpr_leg4_g_tip_x*rpr_leg4_h_1_y - rpr_leg4_acc_2_o_x*rpr_leg4_h_2_y -
-            rpr_leg4_g_tip_y*rpr_leg4_h_1_x
+        rpr_leg4_mu_1_o_in_axes1_z = (
+        rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_qdd_1_o +
+            rpr_leg4_acc_2_o_in_axes1_y*rpr_leg4_h_2_in_spec1_x +
+            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y -
+            rpr_leg4_acc_2_o_in_axes1_x*rpr_leg4_h_2_in_spec1_y -
+            rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x
         )
         # (rpr_leg4-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_leg4_c_o_y = (
-        rpr_leg4_W_1_t*rpr_leg4_h_2_y - inv_rpr_leg4_root_1*rpr_leg4_mu_1_o_z -
-            rpr_leg4_h_2_x*rpr_leg4_qdd_1_o
+        rpr_leg4_c_o_in_axes1_y = (
+        -inv_rpr_leg4_root_1*rpr_leg4_mu_1_o_in_axes1_z -
+            rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_y -
+            rpr_leg4_h_2_in_spec1_x*rpr_leg4_qdd_1_o
         )
         # (rpr_leg4-U) velocity and gravity terms of the leg force
-        rpr_leg4_U_in_base_x = (
-        rpr_leg4_axis_x_x*rpr_leg4_phi_2_o_x + rpr_leg4_axis_x_y*rpr_leg4_c_o_y
+        rpr_leg4_U_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_phi_2_o_in_axes1_x +
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_c_o_in_axes1_y
         )
-        rpr_leg4_U_in_base_y = (
-        rpr_leg4_axis_x_y*rpr_leg4_phi_2_o_x - rpr_leg4_axis_x_x*rpr_leg4_c_o_y
+        rpr_leg4_U_y = (
+        axis_x_rpr_leg4_axes1_y*rpr_leg4_phi_2_o_in_axes1_x -
+            axis_x_rpr_leg4_axes1_x*rpr_leg4_c_o_in_axes1_y
         )
         # (Z_a) rotational part of Z
-        rpr_leg4_Z_a_t = (
-        rpr_leg4_U_in_base_y*rpr_leg4_q_in_base_x - rpr_leg4_U_in_base_x*rpr_leg4_q_in_base_y
-        )
+        rpr_leg4_Z_a_t = rpr_leg4_U_y*rpr_leg4_q_x - rpr_leg4_U_x*rpr_leg4_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_leg4_U_in_base_x, rpr_leg4_U_in_base_y, rpr_leg4_Z_a_t,
+        rpr_leg4_U_x, rpr_leg4_U_y, rpr_leg4_Z_a_t,
         ))
-    total_rpr_leg4_x, total_rpr_leg4_y, total_rpr_leg4_z = sums
+    Z_t_rpr_leg4_x, Z_t_rpr_leg4_y, Z_a_rpr_leg4_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rpr_leg4_x + total_rpr_x
-    Z_t_y = Z_p_y + total_rpr_leg4_y + total_rpr_y
+    Z_t_x = Z_p_x + Z_t_rpr_leg4_x + Z_t_rpr_x
+    Z_t_y = Z_p_y + Z_t_rpr_leg4_y + Z_t_rpr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_rpr_leg4_z + total_rpr_z - Z_q_t
+    Z_a_z = Z_a_rpr_leg4_z + Z_a_rpr_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_Z,)
 
@@ -1948,30 +2024,33 @@ def _run_H(m, X):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
+        rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = rpr_w_2_x
+        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     return ok, (out_H,)
 
@@ -1982,7 +2061,7 @@ def _run_required(m, X, V, A):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2008,202 +2087,224 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
-    f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
+    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
-    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
+    mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
-        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
-        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
-        # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
-        # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-a_p) acceleration of the connection point without its centripetal part
-        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
-        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
         rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
         rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
-        rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y
+        rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
-        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
-        rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y - rpr_g_r1_x
-        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
+        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_acc_2_in_axes1_x = (
+        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x
+        )
+        rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1
+        rpr_phi_2_in_axes1_x = (
+        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1
+        )
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_z = (
-        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
-            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
+        rpr_mu_1_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
-        rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y
-        rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x
+        rpr_c_in_axes1_y = (
+        -inv_rpr_root_1*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+            rpr_h_2_in_spec1_x*rpr_qdd_1
+        )
+        rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_in_axes1_y
+        rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y - axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x
         # (R_a) moment that actuators and external wrench must give
-        rpr_R_a_t = rpr_c_in_base_y*rpr_q_in_base_x - rpr_c_in_base_x*rpr_q_in_base_y
+        rpr_R_a_t = rpr_c_x*rpr_q_y - rpr_c_y*rpr_q_x
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_c_in_base_x, rpr_c_in_base_y, rpr_R_a_t,
+        rpr_c_x, rpr_c_y, rpr_R_a_t,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
-    total_rpr_x, total_rpr_y, total_rpr_z = sums
+    R_t_t, R_t_t_2, R_a_rpr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
-            rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_g_r0_x, rpr_leg4_g_r0_y,
-            rpr_leg4_h_1_x, rpr_leg4_h_1_y, rpr_leg4_h_2_x, rpr_leg4_h_2_y,
-            rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
+        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2,
+            rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
+            rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
+            rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
+            rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_platform_point_x,
+            rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
-        rpr_leg4_q_in_base_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
-        rpr_leg4_q_in_base_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
-        rpr_leg4_S_x = rpr_leg4_q_in_base_x + t_x - rpr_leg4_base_point_x
-        rpr_leg4_S_y = rpr_leg4_q_in_base_y + t_y - rpr_leg4_base_point_y
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
+        rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
+        rpr_leg4_q_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
+        rpr_leg4_S_x = rpr_leg4_q_x + t_x - rpr_leg4_base_point_x
+        rpr_leg4_S_y = rpr_leg4_q_y + t_y - rpr_leg4_base_point_y
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
-        rpr_leg4_axis_x_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
-        rpr_leg4_axis_x_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
-        # (rpr_leg4-S_dot) velocity of the connection point
-        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_in_base_y
-        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_in_base_x
-        rpr_leg4_S_dot_x = t_dot_x - rpr_leg4_S_dot_t
-        rpr_leg4_S_dot_y = rpr_leg4_S_dot_t_2 + t_dot_y
-        rpr_leg4_S_dot_tip_x = (
-        rpr_leg4_S_dot_x*rpr_leg4_axis_x_x + rpr_leg4_S_dot_y*rpr_leg4_axis_x_y
-        )
-        # (rpr_leg4-qd_1) rate of joint 1
-        rpr_leg4_qd_1 = (
-        inv_rpr_leg4_root_1*(rpr_leg4_S_dot_y*rpr_leg4_axis_x_x -
-            rpr_leg4_S_dot_x*rpr_leg4_axis_x_y)
-        )
-        # (rpr_leg4-W_1) centripetal tensor of link 1
-        rpr_leg4_W_1_t = rpr_leg4_qd_1*rpr_leg4_qd_1
         # (rpr_leg4-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
         rpr_leg4_c_1 = inv_rpr_leg4_root_1*rpr_leg4_px_1
         # (rpr_leg4-s_1) sine of the angle of joint 1 from its reference direction
         rpr_leg4_s_1 = inv_rpr_leg4_root_1*rpr_leg4_py_1
+        # (rpr_leg4-S_dot) velocity of the connection point
+        axis_x_rpr_leg4_axes1_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
+        axis_x_rpr_leg4_axes1_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
+        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_y
+        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_x
+        rpr_leg4_S_dot_x = t_dot_x - rpr_leg4_S_dot_t
+        rpr_leg4_S_dot_y = rpr_leg4_S_dot_t_2 + t_dot_y
+        rpr_leg4_S_dot_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_y
+        )
+        # (rpr_leg4-qd_1) rate of joint 1
+        rpr_leg4_qd_1 = (
+        inv_rpr_leg4_root_1*(axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_y -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_x)
+        )
+        # (rpr_leg4-W_1) centripetal tensor of link 1
+        rpr_leg4_W_1_in_axes1_xx = -rpr_leg4_qd_1*rpr_leg4_qd_1
         # (rpr_leg4-a_p) acceleration of the connection point without its centripetal part
-        rpr_leg4_a_p_x = t_ddot_x - alpha_z*rpr_leg4_q_in_base_y
-        rpr_leg4_a_p_y = t_ddot_y + alpha_z*rpr_leg4_q_in_base_x
+        rpr_leg4_a_p_x = t_ddot_x - alpha_z*rpr_leg4_q_y
+        rpr_leg4_a_p_y = t_ddot_y + alpha_z*rpr_leg4_q_x
         # (rpr_leg4-S_ddot) acceleration of the connection point
         rpr_leg4_S_ddot_x = rpr_leg4_a_p_x - omega_z*rpr_leg4_S_dot_t_2
         rpr_leg4_S_ddot_y = rpr_leg4_a_p_y - omega_z*rpr_leg4_S_dot_t
-        rpr_leg4_S_ddot_tip_y = (
-        rpr_leg4_S_ddot_y*rpr_leg4_axis_x_x - rpr_leg4_S_ddot_x*rpr_leg4_axis_x_y
+        rpr_leg4_S_ddot_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_ddot_y - axis_x_rpr_leg4_axes1_y*rpr_leg4_S_ddot_x
         )
         # (rpr_leg4-rel) acceleration of the connection point left to the joint accelerations
-        rpr_leg4_rel_y = rpr_leg4_S_ddot_tip_y - 2.0*rpr_leg4_S_dot_tip_x*rpr_leg4_qd_1
-        # (rpr_leg4-qdd_1) acceleration of joint 1
-        rpr_leg4_qdd_1 = inv_rpr_leg4_root_1*rpr_leg4_rel_y
-        # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_leg4_g_r1_x = rpr_leg4_c_1*rpr_leg4_g_r0_x + rpr_leg4_g_r0_y*rpr_leg4_s_1
-        rpr_leg4_g_r1_y = rpr_leg4_c_1*rpr_leg4_g_r0_y - rpr_leg4_g_r0_x*rpr_leg4_s_1
-        rpr_leg4_acc_2_x = (
-        rpr_leg4_S_ddot_x*rpr_leg4_axis_x_x + rpr_leg4_S_ddot_y*rpr_leg4_axis_x_y -
-            rpr_leg4_g_r1_x
+        rpr_leg4_rel_in_axes1_y = (
+        rpr_leg4_S_ddot_in_axes1_y - 2.0*rpr_leg4_S_dot_in_axes1_x*rpr_leg4_qd_1
         )
-        rpr_leg4_acc_2_y = rpr_leg4_S_ddot_tip_y - rpr_leg4_g_r1_y
+        # (rpr_leg4-qdd_1) acceleration of joint 1
+        rpr_leg4_qdd_1 = inv_rpr_leg4_root_1*rpr_leg4_rel_in_axes1_y
+        # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_leg4_g_in_axes1_x = rpr_leg4_acc_2_t*rpr_leg4_c_1 + rpr_leg4_acc_2_t_2*rpr_leg4_s_1
+        rpr_leg4_g_in_axes1_y = rpr_leg4_acc_2_t_2*rpr_leg4_c_1 - rpr_leg4_acc_2_t*rpr_leg4_s_1
+        rpr_leg4_acc_2_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_ddot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_ddot_y -
+            rpr_leg4_g_in_axes1_x
+        )
+        rpr_leg4_acc_2_in_axes1_y = rpr_leg4_S_ddot_in_axes1_y - rpr_leg4_g_in_axes1_y
         # (rpr_leg4-phi_2) inertia force of link 2 from its turning about its reference point
-        rpr_leg4_phi_2_x = -rpr_leg4_W_1_t*rpr_leg4_h_2_x - rpr_leg4_h_2_y*rpr_leg4_qdd_1
+        rpr_leg4_phi_2_in_axes1_x = (
+        rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_x - rpr_leg4_h_2_in_spec1_y*rpr_leg4_qdd_1
+        )
         # (rpr_leg4-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rpr_leg4_mu_1_z = (
-        rpr_leg4_J_group_1_zz*rpr_leg4_qdd_1 + rpr_leg4_acc_2_y*rpr_leg4_h_2_x +
-            rpr_leg4_g_r1_x*rpr_leg4_h_1_y - rpr_leg4_acc_2_x*rpr_leg4_h_2_y -
-            rpr_leg4_g_r1_y*rpr_leg4_h_1_x
+        rpr_leg4_mu_1_in_axes1_z = (
+        rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_qdd_1 +
+            rpr_leg4_acc_2_in_axes1_y*rpr_leg4_h_2_in_spec1_x +
+            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y -
+            rpr_leg4_acc_2_in_axes1_x*rpr_leg4_h_2_in_spec1_y -
+            rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x
         )
         # (rpr_leg4-c) leg force on the platform without actuation and without the mass at the connection point
+        rpr_leg4_c_in_axes1_y = (
+        -inv_rpr_leg4_root_1*rpr_leg4_mu_1_in_axes1_z -
+            rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_y -
+            rpr_leg4_h_2_in_spec1_x*rpr_leg4_qdd_1
+        )
+        rpr_leg4_c_x = (
+        -axis_x_rpr_leg4_axes1_x*rpr_leg4_phi_2_in_axes1_x -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_c_in_axes1_y
+        )
         rpr_leg4_c_y = (
-        rpr_leg4_W_1_t*rpr_leg4_h_2_y - inv_rpr_leg4_root_1*rpr_leg4_mu_1_z -
-            rpr_leg4_h_2_x*rpr_leg4_qdd_1
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_c_in_axes1_y -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_phi_2_in_axes1_x
         )
-        rpr_leg4_c_in_base_x = (
-        -rpr_leg4_axis_x_x*rpr_leg4_phi_2_x - rpr_leg4_axis_x_y*rpr_leg4_c_y
-        )
-        rpr_leg4_c_in_base_y = rpr_leg4_axis_x_x*rpr_leg4_c_y - rpr_leg4_axis_x_y*rpr_leg4_phi_2_x
         # (R_a) moment that actuators and external wrench must give
-        rpr_leg4_R_a_t = (
-        rpr_leg4_c_in_base_y*rpr_leg4_q_in_base_x - rpr_leg4_c_in_base_x*rpr_leg4_q_in_base_y
-        )
+        rpr_leg4_R_a_t = rpr_leg4_c_x*rpr_leg4_q_y - rpr_leg4_c_y*rpr_leg4_q_x
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_leg4_c_in_base_x, rpr_leg4_c_in_base_y, rpr_leg4_R_a_t,
+        rpr_leg4_c_x, rpr_leg4_c_y, rpr_leg4_R_a_t,
         ))
-    total_rpr_leg4_x, total_rpr_leg4_y, total_rpr_leg4_z = sums
+    R_t_t_3, R_t_t_4, R_a_rpr_leg4_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rpr_leg4_x - total_rpr_x
-    R_t_y = f_p_y - total_rpr_leg4_y - total_rpr_y
+    R_t_x = f_p_x - R_t_t - R_t_t_3
+    R_t_y = f_p_y - R_t_t_2 - R_t_t_4
     # (R_a) moment that actuators and external wrench must give
-    R_a_z = mu_p_z - total_rpr_leg4_z - total_rpr_z
+    R_a_z = R_a_rpr_leg4_z + R_a_rpr_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
+    # (R_a) moment that actuators and external wrench must give
     out_required[2] = R_a_z
     return ok, (out_required, out_H,)
 
@@ -2234,23 +2335,24 @@ def _run_inverse_kinematics(m, X):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
         rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
         # (rpr-q_1) displacement of joint 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_q_1 = atan2(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1)
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
+        # (rpr-q_1) displacement of joint 1
         out_q[_q_rpr[0][leg]] = rpr_q_1
+        # (rpr-q_2) displacement of joint 2
         out_q[_q_rpr[1][leg]] = rpr_root_1
     for leg, k in legs[1]:
         (
@@ -2267,23 +2369,24 @@ def _run_inverse_kinematics(m, X):
         t_y + R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x -
             rpr_leg4_base_point_y
         )
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
         # (rpr_leg4-q_1) displacement of joint 1
+        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
         rpr_leg4_q_1 = atan2(inv_rpr_leg4_root_1*rpr_leg4_py_1, inv_rpr_leg4_root_1*rpr_leg4_px_1)
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
+        # (rpr_leg4-q_1) displacement of joint 1
         out_q[_q_rpr_leg4[0][leg]] = rpr_leg4_q_1
+        # (rpr_leg4-q_2) displacement of joint 2
         out_q[_q_rpr_leg4[1][leg]] = rpr_leg4_root_1
     return ok, (out_q,)
 
@@ -2318,34 +2421,37 @@ def _run_joint_rates(m, X, V):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_x = t_dot_x - omega_z*rpr_q_in_base_y
-        rpr_S_dot_y = t_dot_y + omega_z*rpr_q_in_base_x
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_x = t_dot_x - omega_z*rpr_q_y
+        rpr_S_dot_y = t_dot_y + omega_z*rpr_q_x
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
+        # (rpr-qd_1) rate of joint 1
         out_qd[_qd_rpr[0][leg]] = rpr_qd_1
-        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_tip_x
+        # (rpr-qd_2) rate of joint 2
+        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_in_axes1_x
     for leg, k in legs[1]:
         (
         rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
@@ -2353,39 +2459,40 @@ def _run_joint_rates(m, X, V):
             rpr_leg4_branch_1, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
-        rpr_leg4_q_in_base_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
-        rpr_leg4_q_in_base_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
-        rpr_leg4_S_x = rpr_leg4_q_in_base_x + t_x - rpr_leg4_base_point_x
-        rpr_leg4_S_y = rpr_leg4_q_in_base_y + t_y - rpr_leg4_base_point_y
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
+        rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
+        rpr_leg4_q_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
+        rpr_leg4_S_x = rpr_leg4_q_x + t_x - rpr_leg4_base_point_x
+        rpr_leg4_S_y = rpr_leg4_q_y + t_y - rpr_leg4_base_point_y
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
-        rpr_leg4_axis_x_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
-        rpr_leg4_axis_x_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
         # (rpr_leg4-S_dot) velocity of the connection point
-        rpr_leg4_S_dot_x = t_dot_x - omega_z*rpr_leg4_q_in_base_y
-        rpr_leg4_S_dot_y = t_dot_y + omega_z*rpr_leg4_q_in_base_x
-        rpr_leg4_S_dot_tip_x = (
-        rpr_leg4_S_dot_x*rpr_leg4_axis_x_x + rpr_leg4_S_dot_y*rpr_leg4_axis_x_y
+        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
+        axis_x_rpr_leg4_axes1_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
+        axis_x_rpr_leg4_axes1_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
+        rpr_leg4_S_dot_x = t_dot_x - omega_z*rpr_leg4_q_y
+        rpr_leg4_S_dot_y = t_dot_y + omega_z*rpr_leg4_q_x
+        rpr_leg4_S_dot_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_y
         )
         # (rpr_leg4-qd_1) rate of joint 1
         rpr_leg4_qd_1 = (
-        inv_rpr_leg4_root_1*(rpr_leg4_S_dot_y*rpr_leg4_axis_x_x -
-            rpr_leg4_S_dot_x*rpr_leg4_axis_x_y)
+        inv_rpr_leg4_root_1*(axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_y -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_x)
         )
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
+        # (rpr_leg4-qd_1) rate of joint 1
         out_qd[_qd_rpr_leg4[0][leg]] = rpr_leg4_qd_1
-        out_qd[_qd_rpr_leg4[1][leg]] = rpr_leg4_S_dot_tip_x
+        # (rpr_leg4-qd_2) rate of joint 2
+        out_qd[_qd_rpr_leg4[1][leg]] = rpr_leg4_S_dot_in_axes1_x
     return ok, (out_qd,)
 
 
@@ -2426,51 +2533,56 @@ def _run_joint_accelerations(m, X, V, A):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
         # (rpr-a_p) acceleration of the connection point without its centripetal part
-        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
-        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
         rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
         rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_x = (
-        rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y + rpr_qd_1*rpr_qd_1*rpr_root_1
+        rpr_rel_in_axes1_x = (
+        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y +
+            rpr_qd_1*rpr_qd_1*rpr_root_1
         )
-        rpr_rel_y = (
-        rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_in_axes1_y = (
+        axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x -
+            2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         )
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
+        # (rpr-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rpr[0][leg]] = rpr_qdd_1
-        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_x
+        # (rpr-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_in_axes1_x
     for leg, k in legs[1]:
         (
         rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
@@ -2478,58 +2590,59 @@ def _run_joint_accelerations(m, X, V, A):
             rpr_leg4_branch_1, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
-        rpr_leg4_q_in_base_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
-        rpr_leg4_q_in_base_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
-        rpr_leg4_S_x = rpr_leg4_q_in_base_x + t_x - rpr_leg4_base_point_x
-        rpr_leg4_S_y = rpr_leg4_q_in_base_y + t_y - rpr_leg4_base_point_y
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
+        rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
+        rpr_leg4_q_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
+        rpr_leg4_S_x = rpr_leg4_q_x + t_x - rpr_leg4_base_point_x
+        rpr_leg4_S_y = rpr_leg4_q_y + t_y - rpr_leg4_base_point_y
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
-        rpr_leg4_axis_x_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
-        rpr_leg4_axis_x_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
         # (rpr_leg4-S_dot) velocity of the connection point
-        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_in_base_y
-        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_in_base_x
+        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
+        axis_x_rpr_leg4_axes1_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
+        axis_x_rpr_leg4_axes1_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
+        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_y
+        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_x
         rpr_leg4_S_dot_x = t_dot_x - rpr_leg4_S_dot_t
         rpr_leg4_S_dot_y = rpr_leg4_S_dot_t_2 + t_dot_y
-        rpr_leg4_S_dot_tip_x = (
-        rpr_leg4_S_dot_x*rpr_leg4_axis_x_x + rpr_leg4_S_dot_y*rpr_leg4_axis_x_y
+        rpr_leg4_S_dot_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_y
         )
         # (rpr_leg4-qd_1) rate of joint 1
         rpr_leg4_qd_1 = (
-        inv_rpr_leg4_root_1*(rpr_leg4_S_dot_y*rpr_leg4_axis_x_x -
-            rpr_leg4_S_dot_x*rpr_leg4_axis_x_y)
+        inv_rpr_leg4_root_1*(axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_y -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_x)
         )
         # (rpr_leg4-a_p) acceleration of the connection point without its centripetal part
-        rpr_leg4_a_p_x = t_ddot_x - alpha_z*rpr_leg4_q_in_base_y
-        rpr_leg4_a_p_y = t_ddot_y + alpha_z*rpr_leg4_q_in_base_x
+        rpr_leg4_a_p_x = t_ddot_x - alpha_z*rpr_leg4_q_y
+        rpr_leg4_a_p_y = t_ddot_y + alpha_z*rpr_leg4_q_x
         # (rpr_leg4-S_ddot) acceleration of the connection point
         rpr_leg4_S_ddot_x = rpr_leg4_a_p_x - omega_z*rpr_leg4_S_dot_t_2
         rpr_leg4_S_ddot_y = rpr_leg4_a_p_y - omega_z*rpr_leg4_S_dot_t
         # (rpr_leg4-rel) acceleration of the connection point left to the joint accelerations
-        rpr_leg4_rel_x = (
-        rpr_leg4_S_ddot_x*rpr_leg4_axis_x_x + rpr_leg4_S_ddot_y*rpr_leg4_axis_x_y +
+        rpr_leg4_rel_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_ddot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_ddot_y +
             rpr_leg4_qd_1*rpr_leg4_qd_1*rpr_leg4_root_1
         )
-        rpr_leg4_rel_y = (
-        rpr_leg4_S_ddot_y*rpr_leg4_axis_x_x - rpr_leg4_S_ddot_x*rpr_leg4_axis_x_y -
-            2.0*rpr_leg4_S_dot_tip_x*rpr_leg4_qd_1
+        rpr_leg4_rel_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_ddot_y - axis_x_rpr_leg4_axes1_y*rpr_leg4_S_ddot_x -
+            2.0*rpr_leg4_S_dot_in_axes1_x*rpr_leg4_qd_1
         )
         # (rpr_leg4-qdd_1) acceleration of joint 1
-        rpr_leg4_qdd_1 = inv_rpr_leg4_root_1*rpr_leg4_rel_y
+        rpr_leg4_qdd_1 = inv_rpr_leg4_root_1*rpr_leg4_rel_in_axes1_y
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
+        # (rpr_leg4-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rpr_leg4[0][leg]] = rpr_leg4_qdd_1
-        out_qdd[_qdd_rpr_leg4[1][leg]] = rpr_leg4_rel_x
+        # (rpr_leg4-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_rpr_leg4[1][leg]] = rpr_leg4_rel_in_axes1_x
     return ok, (out_qdd,)
 
 
@@ -2566,172 +2679,199 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link2_mass,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
-        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
-        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
-        # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-a_p) acceleration of the connection point without its centripetal part
-        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
-        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
         rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
         rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
-        rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y
+        rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
-        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
-        rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y - rpr_g_r1_x
-        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
+        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_acc_2_in_axes1_x = (
+        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x
+        )
+        rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_z = (
-        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
-            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
+        rpr_mu_1_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        rpr_c_in_axes1_y = (
+        -inv_rpr_root_1*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+            rpr_h_2_in_spec1_x*rpr_qdd_1
+        )
         # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
-        rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 - rpr_acc_2_x*rpr_link2_mass
-        rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass
-        rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y
-        rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x
+        rpr_c_true_in_axes1_x = (
+        rpr_h_2_in_spec1_y*rpr_qdd_1 - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_acc_2_in_axes1_x*rpr_link2_mass
+        )
+        rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass
+        rpr_c_true_x = (
+        axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y
+        )
+        rpr_c_true_y = (
+        axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y + axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x
+        )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_in_base_x
-        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_in_base_y
-        out_drive[_drive_rpr[0][leg]] = rpr_axis_x_x
-        out_drive[_drive_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_x
+        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_y
+        # (rpr-w_2) reciprocal vector 2
+        out_drive[_drive_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_drive[_drive_rpr[1][leg]] = axis_x_rpr_axes1_y
     for leg, k in legs[1]:
         (
-        rpr_leg4_J_group_1_zz, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
-            rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_g_r0_x, rpr_leg4_g_r0_y,
-            rpr_leg4_h_1_x, rpr_leg4_h_1_y, rpr_leg4_h_2_x, rpr_leg4_h_2_y, rpr_leg4_link2_mass,
+        rpr_leg4_J_group_1_in_axes1_zz, rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2,
+            rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy, rpr_leg4_base_frame_yx,
+            rpr_leg4_base_frame_yy, rpr_leg4_base_point_x, rpr_leg4_base_point_y,
+            rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x, rpr_leg4_h_1_in_spec1_y,
+            rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y, rpr_leg4_link2_mass,
             rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
-        rpr_leg4_q_in_base_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
-        rpr_leg4_q_in_base_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
-        rpr_leg4_S_x = rpr_leg4_q_in_base_x + t_x - rpr_leg4_base_point_x
-        rpr_leg4_S_y = rpr_leg4_q_in_base_y + t_y - rpr_leg4_base_point_y
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
+        rpr_leg4_q_x = R_xx*rpr_leg4_platform_point_x - R_yx*rpr_leg4_platform_point_y
+        rpr_leg4_q_y = R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x
+        rpr_leg4_S_x = rpr_leg4_q_x + t_x - rpr_leg4_base_point_x
+        rpr_leg4_S_y = rpr_leg4_q_y + t_y - rpr_leg4_base_point_y
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
-        rpr_leg4_axis_x_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
-        rpr_leg4_axis_x_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
-        # (rpr_leg4-S_dot) velocity of the connection point
-        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_in_base_y
-        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_in_base_x
-        rpr_leg4_S_dot_x = t_dot_x - rpr_leg4_S_dot_t
-        rpr_leg4_S_dot_y = rpr_leg4_S_dot_t_2 + t_dot_y
-        rpr_leg4_S_dot_tip_x = (
-        rpr_leg4_S_dot_x*rpr_leg4_axis_x_x + rpr_leg4_S_dot_y*rpr_leg4_axis_x_y
-        )
-        # (rpr_leg4-qd_1) rate of joint 1
-        rpr_leg4_qd_1 = (
-        inv_rpr_leg4_root_1*(rpr_leg4_S_dot_y*rpr_leg4_axis_x_x -
-            rpr_leg4_S_dot_x*rpr_leg4_axis_x_y)
-        )
-        # (rpr_leg4-W_1) centripetal tensor of link 1
-        rpr_leg4_W_1_t = rpr_leg4_qd_1*rpr_leg4_qd_1
         # (rpr_leg4-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
         rpr_leg4_c_1 = inv_rpr_leg4_root_1*rpr_leg4_px_1
         # (rpr_leg4-s_1) sine of the angle of joint 1 from its reference direction
         rpr_leg4_s_1 = inv_rpr_leg4_root_1*rpr_leg4_py_1
+        # (rpr_leg4-S_dot) velocity of the connection point
+        axis_x_rpr_leg4_axes1_x = inv_rpr_leg4_root_1*rpr_leg4_S_x
+        axis_x_rpr_leg4_axes1_y = inv_rpr_leg4_root_1*rpr_leg4_S_y
+        rpr_leg4_S_dot_t = omega_z*rpr_leg4_q_y
+        rpr_leg4_S_dot_t_2 = omega_z*rpr_leg4_q_x
+        rpr_leg4_S_dot_x = t_dot_x - rpr_leg4_S_dot_t
+        rpr_leg4_S_dot_y = rpr_leg4_S_dot_t_2 + t_dot_y
+        rpr_leg4_S_dot_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_y
+        )
+        # (rpr_leg4-qd_1) rate of joint 1
+        rpr_leg4_qd_1 = (
+        inv_rpr_leg4_root_1*(axis_x_rpr_leg4_axes1_x*rpr_leg4_S_dot_y -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_S_dot_x)
+        )
+        # (rpr_leg4-W_1) centripetal tensor of link 1
+        rpr_leg4_W_1_in_axes1_xx = -rpr_leg4_qd_1*rpr_leg4_qd_1
         # (rpr_leg4-a_p) acceleration of the connection point without its centripetal part
-        rpr_leg4_a_p_x = t_ddot_x - alpha_z*rpr_leg4_q_in_base_y
-        rpr_leg4_a_p_y = t_ddot_y + alpha_z*rpr_leg4_q_in_base_x
+        rpr_leg4_a_p_x = t_ddot_x - alpha_z*rpr_leg4_q_y
+        rpr_leg4_a_p_y = t_ddot_y + alpha_z*rpr_leg4_q_x
         # (rpr_leg4-S_ddot) acceleration of the connection point
         rpr_leg4_S_ddot_x = rpr_leg4_a_p_x - omega_z*rpr_leg4_S_dot_t_2
         rpr_leg4_S_ddot_y = rpr_leg4_a_p_y - omega_z*rpr_leg4_S_dot_t
-        rpr_leg4_S_ddot_tip_y = (
-        rpr_leg4_S_ddot_y*rpr_leg4_axis_x_x - rpr_leg4_S_ddot_x*rpr_leg4_axis_x_y
+        rpr_leg4_S_ddot_in_axes1_y = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_ddot_y - axis_x_rpr_leg4_axes1_y*rpr_leg4_S_ddot_x
         )
         # (rpr_leg4-rel) acceleration of the connection point left to the joint accelerations
-        rpr_leg4_rel_y = rpr_leg4_S_ddot_tip_y - 2.0*rpr_leg4_S_dot_tip_x*rpr_leg4_qd_1
-        # (rpr_leg4-qdd_1) acceleration of joint 1
-        rpr_leg4_qdd_1 = inv_rpr_leg4_root_1*rpr_leg4_rel_y
-        # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_leg4_g_r1_x = rpr_leg4_c_1*rpr_leg4_g_r0_x + rpr_leg4_g_r0_y*rpr_leg4_s_1
-        rpr_leg4_g_r1_y = rpr_leg4_c_1*rpr_leg4_g_r0_y - rpr_leg4_g_r0_x*rpr_leg4_s_1
-        rpr_leg4_acc_2_x = (
-        rpr_leg4_S_ddot_x*rpr_leg4_axis_x_x + rpr_leg4_S_ddot_y*rpr_leg4_axis_x_y -
-            rpr_leg4_g_r1_x
+        rpr_leg4_rel_in_axes1_y = (
+        rpr_leg4_S_ddot_in_axes1_y - 2.0*rpr_leg4_S_dot_in_axes1_x*rpr_leg4_qd_1
         )
-        rpr_leg4_acc_2_y = rpr_leg4_S_ddot_tip_y - rpr_leg4_g_r1_y
+        # (rpr_leg4-qdd_1) acceleration of joint 1
+        rpr_leg4_qdd_1 = inv_rpr_leg4_root_1*rpr_leg4_rel_in_axes1_y
+        # (rpr_leg4-acc_2) acceleration of the reference point of link 2, less gravity
+        rpr_leg4_g_in_axes1_x = rpr_leg4_acc_2_t*rpr_leg4_c_1 + rpr_leg4_acc_2_t_2*rpr_leg4_s_1
+        rpr_leg4_g_in_axes1_y = rpr_leg4_acc_2_t_2*rpr_leg4_c_1 - rpr_leg4_acc_2_t*rpr_leg4_s_1
+        rpr_leg4_acc_2_in_axes1_x = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_S_ddot_x + axis_x_rpr_leg4_axes1_y*rpr_leg4_S_ddot_y -
+            rpr_leg4_g_in_axes1_x
+        )
+        rpr_leg4_acc_2_in_axes1_y = rpr_leg4_S_ddot_in_axes1_y - rpr_leg4_g_in_axes1_y
         # (rpr_leg4-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rpr_leg4_mu_1_z = (
-        rpr_leg4_J_group_1_zz*rpr_leg4_qdd_1 + rpr_leg4_acc_2_y*rpr_leg4_h_2_x +
-            rpr_leg4_g_r1_x*rpr_leg4_h_1_y - rpr_leg4_acc_2_x*rpr_leg4_h_2_y -
-            rpr_leg4_g_r1_y*rpr_leg4_h_1_x
+        rpr_leg4_mu_1_in_axes1_z = (
+        rpr_leg4_J_group_1_in_axes1_zz*rpr_leg4_qdd_1 +
+            rpr_leg4_acc_2_in_axes1_y*rpr_leg4_h_2_in_spec1_x +
+            rpr_leg4_g_in_axes1_x*rpr_leg4_h_1_in_spec1_y -
+            rpr_leg4_acc_2_in_axes1_x*rpr_leg4_h_2_in_spec1_y -
+            rpr_leg4_g_in_axes1_y*rpr_leg4_h_1_in_spec1_x
         )
         # (rpr_leg4-c) leg force on the platform without actuation and without the mass at the connection point
-        rpr_leg4_c_y = (
-        rpr_leg4_W_1_t*rpr_leg4_h_2_y - inv_rpr_leg4_root_1*rpr_leg4_mu_1_z -
-            rpr_leg4_h_2_x*rpr_leg4_qdd_1
+        rpr_leg4_c_in_axes1_y = (
+        -inv_rpr_leg4_root_1*rpr_leg4_mu_1_in_axes1_z -
+            rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_y -
+            rpr_leg4_h_2_in_spec1_x*rpr_leg4_qdd_1
         )
         # (rpr_leg4-c_true) leg force on the platform without actuation, the last link's mass included
+        rpr_leg4_c_true_in_axes1_x = (
+        rpr_leg4_h_2_in_spec1_y*rpr_leg4_qdd_1 - rpr_leg4_W_1_in_axes1_xx*rpr_leg4_h_2_in_spec1_x
+            - rpr_leg4_acc_2_in_axes1_x*rpr_leg4_link2_mass
+        )
+        rpr_leg4_c_true_in_axes1_y = (
+        rpr_leg4_c_in_axes1_y - rpr_leg4_acc_2_in_axes1_y*rpr_leg4_link2_mass
+        )
         rpr_leg4_c_true_x = (
-        rpr_leg4_W_1_t*rpr_leg4_h_2_x + rpr_leg4_h_2_y*rpr_leg4_qdd_1 -
-            rpr_leg4_acc_2_x*rpr_leg4_link2_mass
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_c_true_in_axes1_x -
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_c_true_in_axes1_y
         )
-        rpr_leg4_c_true_y = rpr_leg4_c_y - rpr_leg4_acc_2_y*rpr_leg4_link2_mass
-        rpr_leg4_c_true_in_base_x = (
-        rpr_leg4_axis_x_x*rpr_leg4_c_true_x - rpr_leg4_axis_x_y*rpr_leg4_c_true_y
-        )
-        rpr_leg4_c_true_in_base_y = (
-        rpr_leg4_axis_x_x*rpr_leg4_c_true_y + rpr_leg4_axis_x_y*rpr_leg4_c_true_x
+        rpr_leg4_c_true_y = (
+        axis_x_rpr_leg4_axes1_x*rpr_leg4_c_true_in_axes1_y +
+            axis_x_rpr_leg4_axes1_y*rpr_leg4_c_true_in_axes1_x
         )
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
-        out_leg_force[_leg_force_rpr_leg4[0][leg]] = rpr_leg4_c_true_in_base_x
-        out_leg_force[_leg_force_rpr_leg4[1][leg]] = rpr_leg4_c_true_in_base_y
+        # (rpr_leg4-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rpr_leg4[0][leg]] = rpr_leg4_c_true_x
+        out_leg_force[_leg_force_rpr_leg4[1][leg]] = rpr_leg4_c_true_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2741,7 +2881,7 @@ def _run_potential(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2754,57 +2894,58 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
-        R_yx*h_star_x + m_star*t_y)
+    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
+        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link1_mass,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
+            rpr_potential_t_2,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
         rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
         # (potential) potential energy
-        rpr_potential_t = (
-        (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x + rpr_h_2_x +
-            rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) + (rpr_c_1*rpr_g_r0_y -
-            rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y + rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 -
-            rpr_b_r0_x*rpr_s_1))
+        rpr_potential_t_3 = (
+        (rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
+            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
+            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_potential_t,
+        rpr_potential_t_3,
         ))
-    total_rpr, = sums
+    potential_t_2, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        rpr_leg4_b_r0_x, rpr_leg4_b_r0_y, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
+        rpr_leg4_acc_2_t, rpr_leg4_acc_2_t_2, rpr_leg4_base_frame_xx, rpr_leg4_base_frame_xy,
             rpr_leg4_base_frame_yx, rpr_leg4_base_frame_yy, rpr_leg4_base_point_x,
-            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_g_r0_x, rpr_leg4_g_r0_y,
-            rpr_leg4_h_1_x, rpr_leg4_h_1_y, rpr_leg4_h_2_x, rpr_leg4_h_2_y, rpr_leg4_link1_mass,
-            rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
+            rpr_leg4_base_point_y, rpr_leg4_branch_1, rpr_leg4_h_1_in_spec1_x,
+            rpr_leg4_h_1_in_spec1_y, rpr_leg4_h_2_in_spec1_x, rpr_leg4_h_2_in_spec1_y,
+            rpr_leg4_link1_mass, rpr_leg4_platform_point_x, rpr_leg4_platform_point_y,
+            rpr_leg4_potential_t, rpr_leg4_potential_t_2,
         ) = k
         # (rpr_leg4-S) from the base point to the connection point
         rpr_leg4_S_x = (
@@ -2815,38 +2956,39 @@ def _run_potential(m, X):
         t_y + R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x -
             rpr_leg4_base_point_y
         )
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
         # (rpr_leg4-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_leg4_root_1 = 1.0/rpr_leg4_root_1
         rpr_leg4_c_1 = inv_rpr_leg4_root_1*rpr_leg4_px_1
         # (rpr_leg4-s_1) sine of the angle of joint 1 from its reference direction
         rpr_leg4_s_1 = inv_rpr_leg4_root_1*rpr_leg4_py_1
         # (potential) potential energy
-        rpr_leg4_potential_t = (
-        (rpr_leg4_c_1*rpr_leg4_g_r0_x + rpr_leg4_g_r0_y*rpr_leg4_s_1)*(rpr_leg4_h_1_x +
-            rpr_leg4_h_2_x + rpr_leg4_link1_mass*(rpr_leg4_b_r0_x*rpr_leg4_c_1 +
-            rpr_leg4_b_r0_y*rpr_leg4_s_1)) + (rpr_leg4_c_1*rpr_leg4_g_r0_y -
-            rpr_leg4_g_r0_x*rpr_leg4_s_1)*(rpr_leg4_h_1_y + rpr_leg4_h_2_y +
-            rpr_leg4_link1_mass*(rpr_leg4_b_r0_y*rpr_leg4_c_1 - rpr_leg4_b_r0_x*rpr_leg4_s_1))
+        rpr_leg4_potential_t_3 = (
+        (rpr_leg4_acc_2_t*rpr_leg4_c_1 + rpr_leg4_acc_2_t_2*rpr_leg4_s_1)*(rpr_leg4_h_1_in_spec1_x
+            + rpr_leg4_h_2_in_spec1_x + rpr_leg4_link1_mass*(rpr_leg4_c_1*rpr_leg4_potential_t +
+            rpr_leg4_potential_t_2*rpr_leg4_s_1)) + (rpr_leg4_acc_2_t_2*rpr_leg4_c_1 -
+            rpr_leg4_acc_2_t*rpr_leg4_s_1)*(rpr_leg4_h_1_in_spec1_y + rpr_leg4_h_2_in_spec1_y +
+            rpr_leg4_link1_mass*(rpr_leg4_c_1*rpr_leg4_potential_t_2 -
+            rpr_leg4_potential_t*rpr_leg4_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_leg4_root_1) > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_leg4_potential_t,
+        -rpr_leg4_potential_t_3,
         ))
-    total_rpr_leg4, = sums
+    potential_rpr_leg4, = sums
     # (potential) potential energy
-    potential = -potential_t - total_rpr - total_rpr_leg4
+    potential = potential_rpr_leg4 - potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -2858,7 +3000,7 @@ def _run_condition(m, X):
     cos = m.cos
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y = shared
+    b_c_in_platform_x, b_c_in_platform_y = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2874,6 +3016,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = 0.62
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -2883,36 +3026,35 @@ def _run_condition(m, X):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
-        # (spread) rms distance of the platform points from their centroid
-        rpr_spread_t = b_c_x - rpr_platform_point_x
-        rpr_spread_t_2 = b_c_y - rpr_platform_point_y
-        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
-        # (rpr-rho2_1) squared amplitude
-        rpr_pivot_size = abs(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_pivot_size_2 = abs(rpr_root_1)
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rpr_pivot_size = abs(rpr_rho2_1)
+        rpr_pivot_size_2 = abs(rpr_root_1)
         rpr_least_pivots = (
         least(1.6129032258064515*sqrt(rpr_pivot_size), 1.6129032258064517*rpr_pivot_size_2)
         )
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x
+        # (spread) rms distance of the platform points from their centroid
+        rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x
+        rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y
+        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
         clear = (
         clear & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_root_1) > _TOLERANCE * 0.62))
@@ -2920,11 +3062,14 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         rpr_spread_t_3,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = rpr_w_2_x
+        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
+        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rpr[0][leg]] = rpr_least_pivots
-    total_rpr, = sums
+    spread_rpr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
@@ -2941,28 +3086,26 @@ def _run_condition(m, X):
         t_y + R_xx*rpr_leg4_platform_point_y + R_yx*rpr_leg4_platform_point_x -
             rpr_leg4_base_point_y
         )
-        # (rpr_leg4-py_1) component across the reference direction
-        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-px_1) component along the reference direction
         rpr_leg4_px_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xx + rpr_leg4_S_y*rpr_leg4_base_frame_yx
+        # (rpr_leg4-py_1) component across the reference direction
+        rpr_leg4_py_1 = rpr_leg4_S_x*rpr_leg4_base_frame_xy + rpr_leg4_S_y*rpr_leg4_base_frame_yy
         # (rpr_leg4-rho2_1) squared amplitude
         rpr_leg4_rho2_1 = rpr_leg4_px_1*rpr_leg4_px_1 + rpr_leg4_py_1*rpr_leg4_py_1
         # (rpr_leg4-root_1) amplitude, with the sign of the branch
         rpr_leg4_root_1 = rpr_leg4_branch_1*sqrt(rpr_leg4_rho2_1)
-        # (spread) rms distance of the platform points from their centroid
-        rpr_leg4_spread_t = b_c_x - rpr_leg4_platform_point_x
-        rpr_leg4_spread_t_2 = b_c_y - rpr_leg4_platform_point_y
-        rpr_leg4_spread_t_3 = (
-        rpr_leg4_spread_t*rpr_leg4_spread_t + rpr_leg4_spread_t_2*rpr_leg4_spread_t_2
-        )
-        # (rpr_leg4-rho2_1) squared amplitude
-        rpr_leg4_pivot_size = abs(rpr_leg4_rho2_1)
-        # (rpr_leg4-w_1) reciprocal vector 1
-        rpr_leg4_pivot_size_2 = abs(rpr_leg4_root_1)
         # (rpr_leg4-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rpr_leg4_pivot_size = abs(rpr_leg4_rho2_1)
+        rpr_leg4_pivot_size_2 = abs(rpr_leg4_root_1)
         rpr_leg4_least_pivots = (
         least(1.6129032258064515*sqrt(rpr_leg4_pivot_size),
             1.6129032258064517*rpr_leg4_pivot_size_2)
+        )
+        # (spread) rms distance of the platform points from their centroid
+        rpr_leg4_spread_t = b_c_in_platform_x - rpr_leg4_platform_point_x
+        rpr_leg4_spread_t_2 = b_c_in_platform_y - rpr_leg4_platform_point_y
+        rpr_leg4_spread_t_3 = (
+        rpr_leg4_spread_t*rpr_leg4_spread_t + rpr_leg4_spread_t_2*rpr_leg4_spread_t_2
         )
         clear = (
         clear & m.every(leg, (abs(rpr_leg4_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
@@ -2971,10 +3114,12 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         rpr_leg4_spread_t_3,
         ))
+        # (rpr_leg4-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rpr_leg4[0][leg]] = rpr_leg4_least_pivots
-    total_rpr_leg4, = sums
+    spread_rpr_leg4, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = sqrt(0.25*total_rpr + 0.25*total_rpr_leg4)
+    spread = sqrt(0.25*spread_rpr + 0.25*spread_rpr_leg4)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

@@ -576,29 +576,29 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rpr = 0;
-    real total_rpr_x = 0;
-    real total_rpr_y = 0;
-    real total_rpr_xx = 0;
-    real total_rpr_zz = 0;
-    real total_rpr_x_2 = 0;
-    real total_rpr_y_2 = 0;
-    real total_rrr = 0;
-    real total_rrr_x = 0;
-    real total_rrr_y = 0;
-    real total_rrr_xx = 0;
-    real total_rrr_zz = 0;
-    real total_rrr_x_2 = 0;
-    real total_rrr_y_2 = 0;
-    real total_rrr_2 = 0;
-    real total_prr = 0;
-    real total_prr_x = 0;
-    real total_prr_y = 0;
-    real total_prr_xx = 0;
-    real total_prr_zz = 0;
-    real total_prr_x_2 = 0;
-    real total_prr_y_2 = 0;
-    real total_prr_2 = 0;
+    real m_star_rpr = 0;
+    real h_star_rpr_in_platform_x = 0;
+    real h_star_rpr_in_platform_y = 0;
+    real J_star_rpr_in_platform_xx = 0;
+    real J_star_rpr_in_platform_zz = 0;
+    real b_c_rpr_in_platform_x = 0;
+    real b_c_rpr_in_platform_y = 0;
+    real m_star_rrr = 0;
+    real h_star_rrr_in_platform_x = 0;
+    real h_star_rrr_in_platform_y = 0;
+    real J_star_rrr_in_platform_xx = 0;
+    real J_star_rrr_in_platform_zz = 0;
+    real b_c_rrr_in_platform_x = 0;
+    real b_c_rrr_in_platform_y = 0;
+    real legs_size_rrr = 0;
+    real m_star_prr = 0;
+    real h_star_prr_in_platform_x = 0;
+    real h_star_prr_in_platform_y = 0;
+    real J_star_prr_in_platform_xx = 0;
+    real J_star_prr_in_platform_zz = 0;
+    real b_c_prr_in_platform_x = 0;
+    real b_c_prr_in_platform_y = 0;
+    real legs_size_prr = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -635,18 +635,22 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rpr_link2_inertia_zz = params->rpr_link2_inertia[own][2][2];
         static const signed char signs_rpr_branch_1[] = {1};
         const real rpr_branch_1 = signs_rpr_branch_1[own];
+        /* (rpr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rpr_h_1_in_spec1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
+        const real rpr_h_1_in_spec1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
         /* (rpr-h_2) first moment of link 2 about the connection point */
-        const real rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
-        const real rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
-        /* (rpr-J_1) inertia tensor of link 1 about the origin of link 1 */
-        const real rpr_J_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
-            rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
-        /* (rpr-J_2) inertia tensor of link 2 about the connection point */
-        const real rpr_J_2_t = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
-            rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
+        const real rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass;
+        const real rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass;
+        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
+        const real rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
         /* (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point */
-        const real rpr_J_group_1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
-            rpr_J_1_t*rpr_link1_mass + rpr_J_2_t*rpr_link2_mass;
+        const real rpr_J_group_1_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
+            rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
+        const real rpr_J_group_1_t_2 = rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
+            rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y;
+        const real rpr_J_group_1_in_axes1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
+            rpr_J_group_1_t*rpr_link1_mass + rpr_J_group_1_t_2*rpr_link2_mass;
         /* (h_star) first moment about the platform origin */
         const real rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x;
         const real rpr_h_star_t_2 = rpr_link2_mass*rpr_platform_point_y;
@@ -655,20 +659,14 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rpr_J_star_t_2 = rpr_J_star_t + rpr_platform_point_x*rpr_platform_point_x;
         const real rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass;
         const real rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass;
-        /* (rpr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
-        const real rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
-        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx;
-        const real rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy;
         /* (potential) potential energy */
-        const real rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x +
+        const real rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x +
             rpr_base_frame_yx*rpr_base_point_y;
-        const real rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x +
+        const real rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x +
             rpr_base_frame_yy*rpr_base_point_y;
-        model->rpr_J_group_1_zz[leg] = rpr_J_group_1_zz;
-        model->rpr_b_r0_x[leg] = rpr_b_r0_x;
-        model->rpr_b_r0_y[leg] = rpr_b_r0_y;
+        model->rpr_J_group_1_in_axes1_zz[leg] = rpr_J_group_1_in_axes1_zz;
+        model->rpr_acc_2_t[leg] = rpr_acc_2_t;
+        model->rpr_acc_2_t_2[leg] = rpr_acc_2_t_2;
         model->rpr_base_frame_xx[leg] = rpr_base_frame_xx;
         model->rpr_base_frame_xy[leg] = rpr_base_frame_xy;
         model->rpr_base_frame_yx[leg] = rpr_base_frame_yx;
@@ -676,23 +674,23 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         model->rpr_base_point_x[leg] = rpr_base_point_x;
         model->rpr_base_point_y[leg] = rpr_base_point_y;
         model->rpr_branch_1[leg] = rpr_branch_1;
-        model->rpr_g_r0_x[leg] = rpr_g_r0_x;
-        model->rpr_g_r0_y[leg] = rpr_g_r0_y;
-        model->rpr_h_1_x[leg] = rpr_h_1_x;
-        model->rpr_h_1_y[leg] = rpr_h_1_y;
-        model->rpr_h_2_x[leg] = rpr_h_2_x;
-        model->rpr_h_2_y[leg] = rpr_h_2_y;
+        model->rpr_h_1_in_spec1_x[leg] = rpr_h_1_in_spec1_x;
+        model->rpr_h_1_in_spec1_y[leg] = rpr_h_1_in_spec1_y;
+        model->rpr_h_2_in_spec1_x[leg] = rpr_h_2_in_spec1_x;
+        model->rpr_h_2_in_spec1_y[leg] = rpr_h_2_in_spec1_y;
         model->rpr_link1_mass[leg] = rpr_link1_mass;
         model->rpr_link2_mass[leg] = rpr_link2_mass;
         model->rpr_platform_point_x[leg] = rpr_platform_point_x;
         model->rpr_platform_point_y[leg] = rpr_platform_point_y;
-        total_rpr += rpr_link2_mass;
-        total_rpr_x += rpr_h_star_t;
-        total_rpr_y += rpr_h_star_t_2;
-        total_rpr_xx += rpr_J_star_t_3;
-        total_rpr_zz += rpr_J_star_t_4;
-        total_rpr_x_2 += rpr_platform_point_x;
-        total_rpr_y_2 += rpr_platform_point_y;
+        model->rpr_potential_t[leg] = rpr_potential_t;
+        model->rpr_potential_t_2[leg] = rpr_potential_t_2;
+        m_star_rpr += rpr_link2_mass;
+        h_star_rpr_in_platform_x += rpr_h_star_t;
+        h_star_rpr_in_platform_y += rpr_h_star_t_2;
+        J_star_rpr_in_platform_xx += rpr_J_star_t_3;
+        J_star_rpr_in_platform_zz += rpr_J_star_t_4;
+        b_c_rpr_in_platform_x += rpr_platform_point_x;
+        b_c_rpr_in_platform_y += rpr_platform_point_y;
     }
     for (size_t leg = 0; leg < 1; ++leg) {
         const size_t own = leg;
@@ -716,50 +714,61 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {1};
         const real rrr_branch_1 = signs_rrr_branch_1[own];
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
-        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real rrr_size_t = R(4.58151643161e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
-        const real rrr_size = root(rrr_size_t);
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
-        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
-        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
-        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
-        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
-        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
-        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
-            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
-        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
-        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_size_t_3 = R(4.58151643161e-07) + rrr_size_t + rrr_size_t_2;
+        const real rrr_size = root(rrr_size_t_3);
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
+            rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
+        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
+        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = 1/rrr_size_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
+        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
+        const real inv_rrr_size = 1/rrr_size;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
-            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
+        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
         /* (h_star) first moment about the platform origin */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
@@ -768,34 +777,20 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
-        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
         /* (potential) potential energy */
-        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-rho2_1) squared amplitude */
-        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_size = 1/rrr_size;
-        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
-        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
-        model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
         model->inv_rrr_size[leg] = inv_rrr_size;
-        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
-        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
-        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
+        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
+        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
+        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
+        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
+        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
         model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
-        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
-        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
@@ -803,32 +798,35 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
         model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
         model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
-        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
+        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
         model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
-        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
-        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
-        model->rrr_h_1_x[leg] = rrr_h_1_x;
-        model->rrr_h_1_y[leg] = rrr_h_1_y;
-        model->rrr_h_2_x[leg] = rrr_h_2_x;
-        model->rrr_h_2_y[leg] = rrr_h_2_y;
+        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
+        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
+        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
+        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
+        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
+        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
+        model->rrr_potential_t[leg] = rrr_potential_t;
+        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
         model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
         model->rrr_size[leg] = rrr_size;
-        total_rrr += rrr_link2_mass;
-        total_rrr_x += rrr_h_star_t;
-        total_rrr_y += rrr_h_star_t_2;
-        total_rrr_xx += rrr_J_star_t_3;
-        total_rrr_zz += rrr_J_star_t_4;
-        total_rrr_x_2 += rrr_platform_point_x;
-        total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += rrr_size_t;
+        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        m_star_rrr += rrr_link2_mass;
+        h_star_rrr_in_platform_x += rrr_h_star_t;
+        h_star_rrr_in_platform_y += rrr_h_star_t_2;
+        J_star_rrr_in_platform_xx += rrr_J_star_t_3;
+        J_star_rrr_in_platform_zz += rrr_J_star_t_4;
+        b_c_rrr_in_platform_x += rrr_platform_point_x;
+        b_c_rrr_in_platform_y += rrr_platform_point_y;
+        legs_size_rrr += rrr_size_t_3;
     }
     for (size_t leg = 0; leg < 1; ++leg) {
         const size_t own = leg;
@@ -850,22 +848,32 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real prr_link2_inertia_zz = params->prr_link2_inertia[own][2][2];
         static const signed char signs_prr_branch_1[] = {-1};
         const real prr_branch_1 = signs_prr_branch_1[own];
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = 1/prr_disc_1_t;
-        /* (prr-rho_tip_2) connection point to the centre of mass of link 2 */
-        const real prr_rho_tip_2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x;
-        /* (prr-h_2) first moment of link 2 about the connection point */
-        const real prr_h_2_x = prr_link2_mass*prr_rho_tip_2_x;
-        const real prr_h_2_y = prr_link2_centre_of_mass_y*prr_link2_mass;
         /* (prr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real prr_size_t = R(4.58151643161e-07) + prr_disc_1_t;
-        const real prr_size = root(prr_size_t);
+        const real prr_size_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+        const real prr_size_t_2 = R(4.58151643161e-07) + prr_size_t;
+        const real prr_size = root(prr_size_t_2);
+        /* (prr-h_1) first moment of link 1 about the origin of link 1 */
+        const real prr_h_1_in_spec0_x = prr_link1_centre_of_mass_x*prr_link1_mass;
+        const real prr_h_1_in_spec0_y = prr_link1_centre_of_mass_y*prr_link1_mass;
+        /* (prr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real prr_rho_tip_2_in_spec2_x = prr_link2_centre_of_mass_x -
+            prr_platform_joint_offset_x;
+        /* (prr-h_2) first moment of link 2 about the connection point */
+        const real prr_h_2_in_spec2_x = prr_link2_mass*prr_rho_tip_2_in_spec2_x;
+        const real prr_h_2_in_spec2_y = prr_link2_centre_of_mass_y*prr_link2_mass;
         /* (prr-J_2) inertia tensor of link 2 about the connection point */
         const real prr_J_2_t = prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y +
-            prr_rho_tip_2_x*prr_rho_tip_2_x;
-        const real prr_J_2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass;
+            prr_rho_tip_2_in_spec2_x*prr_rho_tip_2_in_spec2_x;
+        const real prr_J_2_in_spec2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass;
+        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_prr_size_t = 1/prr_size_t;
+        /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prr_g_in_axes0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
+        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prr_g_in_axes0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
+        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_prr_size = 1/prr_size;
         /* (h_star) first moment about the platform origin */
         const real prr_h_star_t = prr_link2_mass*prr_platform_point_x;
         const real prr_h_star_t_2 = prr_link2_mass*prr_platform_point_y;
@@ -874,24 +882,15 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real prr_J_star_t_2 = prr_J_star_t + prr_platform_point_x*prr_platform_point_x;
         const real prr_J_star_t_3 = prr_J_star_t*prr_link2_mass;
         const real prr_J_star_t_4 = prr_J_star_t_2*prr_link2_mass;
-        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prr_g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
-        const real prr_g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
-        /* (prr-h_1) first moment of link 1 about the origin of link 1 */
-        const real prr_h_1_x = prr_link1_centre_of_mass_x*prr_link1_mass;
-        const real prr_h_1_y = prr_link1_centre_of_mass_y*prr_link1_mass;
         /* (potential) potential energy */
-        const real prr_b_r0_x = prr_base_frame_xx*prr_base_point_x +
+        const real prr_b_in_axes0_x = prr_base_frame_xx*prr_base_point_x +
             prr_base_frame_yx*prr_base_point_y;
         const real prr_potential_t = prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
             prr_base_frame_yy*prr_base_point_y);
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_size = 1/prr_size;
-        model->inv_prr_disc_1_t_5[leg] = inv_prr_disc_1_t_5;
         model->inv_prr_size[leg] = inv_prr_size;
-        model->prr_J_2_zz[leg] = prr_J_2_zz;
-        model->prr_b_r0_x[leg] = prr_b_r0_x;
+        model->inv_prr_size_t[leg] = inv_prr_size_t;
+        model->prr_J_2_in_spec2_zz[leg] = prr_J_2_in_spec2_zz;
+        model->prr_b_in_axes0_x[leg] = prr_b_in_axes0_x;
         model->prr_base_frame_xx[leg] = prr_base_frame_xx;
         model->prr_base_frame_xy[leg] = prr_base_frame_xy;
         model->prr_base_frame_yx[leg] = prr_base_frame_yx;
@@ -899,13 +898,12 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         model->prr_base_point_x[leg] = prr_base_point_x;
         model->prr_base_point_y[leg] = prr_base_point_y;
         model->prr_branch_1[leg] = prr_branch_1;
-        model->prr_disc_1_t[leg] = prr_disc_1_t;
-        model->prr_g_r0_x[leg] = prr_g_r0_x;
-        model->prr_g_r0_y[leg] = prr_g_r0_y;
-        model->prr_h_1_x[leg] = prr_h_1_x;
-        model->prr_h_1_y[leg] = prr_h_1_y;
-        model->prr_h_2_x[leg] = prr_h_2_x;
-        model->prr_h_2_y[leg] = prr_h_2_y;
+        model->prr_g_in_axes0_x[leg] = prr_g_in_axes0_x;
+        model->prr_g_in_axes0_y[leg] = prr_g_in_axes0_y;
+        model->prr_h_1_in_spec0_x[leg] = prr_h_1_in_spec0_x;
+        model->prr_h_1_in_spec0_y[leg] = prr_h_1_in_spec0_y;
+        model->prr_h_2_in_spec2_x[leg] = prr_h_2_in_spec2_x;
+        model->prr_h_2_in_spec2_y[leg] = prr_h_2_in_spec2_y;
         model->prr_link1_mass[leg] = prr_link1_mass;
         model->prr_link2_mass[leg] = prr_link2_mass;
         model->prr_platform_joint_offset_x[leg] = prr_platform_joint_offset_x;
@@ -913,43 +911,50 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         model->prr_platform_point_y[leg] = prr_platform_point_y;
         model->prr_potential_t[leg] = prr_potential_t;
         model->prr_size[leg] = prr_size;
-        total_prr += prr_link2_mass;
-        total_prr_x += prr_h_star_t;
-        total_prr_y += prr_h_star_t_2;
-        total_prr_xx += prr_J_star_t_3;
-        total_prr_zz += prr_J_star_t_4;
-        total_prr_x_2 += prr_platform_point_x;
-        total_prr_y_2 += prr_platform_point_y;
-        total_prr_2 += prr_size_t;
+        model->prr_size_t[leg] = prr_size_t;
+        m_star_prr += prr_link2_mass;
+        h_star_prr_in_platform_x += prr_h_star_t;
+        h_star_prr_in_platform_y += prr_h_star_t_2;
+        J_star_prr_in_platform_xx += prr_J_star_t_3;
+        J_star_prr_in_platform_zz += prr_J_star_t_4;
+        b_c_prr_in_platform_x += prr_platform_point_x;
+        b_c_prr_in_platform_y += prr_platform_point_y;
+        legs_size_prr += prr_size_t_2;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_prr + total_rpr + total_rrr;
+    const real m_star = m_star_prr + m_star_rpr + m_star_rrr + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_prr_x + total_rpr_x + total_rrr_x;
-    const real h_star_y = h_star_t_2 + total_prr_y + total_rpr_y + total_rrr_y;
+    const real h_star_in_platform_x = h_star_prr_in_platform_x + h_star_rpr_in_platform_x +
+        h_star_rrr_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_prr_in_platform_y + h_star_rpr_in_platform_y +
+        h_star_rrr_in_platform_y + h_star_t_2;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = J_star_t_3 + total_prr_xx + total_rpr_xx + total_rrr_xx;
-    const real J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_prr_zz -
-        total_rpr_zz - total_rrr_zz;
-    const real J_star_t_6 = J_star_t_5 - J_star_xx;
+    const real J_star_in_platform_xx = J_star_prr_in_platform_xx + J_star_rpr_in_platform_xx +
+        J_star_rrr_in_platform_xx + J_star_t_3;
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_prr_in_platform_zz -
+        J_star_rpr_in_platform_zz - J_star_rrr_in_platform_zz - J_star_t_4 -
+        platform_inertia_zz;
+    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_prr_x_2 +
-        R(0.3333333333333333)*total_rpr_x_2 + R(0.3333333333333333)*total_rrr_x_2;
-    const real b_c_y = R(0.3333333333333333)*total_prr_y_2 +
-        R(0.3333333333333333)*total_rpr_y_2 + R(0.3333333333333333)*total_rrr_y_2;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prr_in_platform_x +
+        R(0.3333333333333333)*b_c_rpr_in_platform_x +
+        R(0.3333333333333333)*b_c_rrr_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prr_in_platform_y +
+        R(0.3333333333333333)*b_c_rpr_in_platform_y +
+        R(0.3333333333333333)*b_c_rrr_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.12813333333333332) + R(0.3333333333333333)*total_prr_2 +
-        R(0.3333333333333333)*total_rrr_2);
-    model->J_star_t_6 = J_star_t_6;
+    const real legs_size = root(R(0.12813333333333332) + R(0.3333333333333333)*legs_size_prr +
+        R(0.3333333333333333)*legs_size_rrr);
+    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1400,22 +1405,22 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1423,11 +1428,11 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[4*w + k] = t_dot_x;
         s[5*w + k] = t_dot_y;
         s[6*w + k] = omega_z;
-        s[7*w + k] = h_star_in_base_x;
-        s[8*w + k] = h_star_in_base_y;
+        s[7*w + k] = h_star_x;
+        s[8*w + k] = h_star_y;
         s[9*w + k] = Z_p_x;
         s[10*w + k] = Z_p_y;
-        s[11*w + k] = Z_q_t;
+        s[11*w + k] = Z_q_z;
     }
 }
 
@@ -1442,121 +1447,130 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
-        /* (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y;
-        /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_d_c_yy = -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x +
-            inv_rpr_root_1*rpr_J_group_1_zz);
-        /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rpr_Q_t = R(0.5)*rpr_d_c_yy;
-        const real rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t;
-        const real rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t;
-        const real rpr_Q_t_4 = 2*rpr_Q_t_2*rpr_axis_x_y;
-        const real rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y;
-        const real rpr_Q_t_6 = 2*rpr_Q_t_3*rpr_axis_x_x;
-        /* (M_ta) coupling block of M */
-        const real rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x;
-        const real rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x;
         /* (rpr-S_dot) velocity of the connection point */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
+        /* (rpr-W_1) centripetal tensor of link 1 */
+        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
         /* (rpr-u_1) centripetal acceleration of the connection point */
         const real rpr_u_1_t = omega_z*rpr_S_dot_t_2;
-        const real rpr_u_1_t_2 = omega_z*rpr_S_dot_t;
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-u_1) centripetal acceleration of the connection point */
-        const real rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2;
+        const real rpr_u_1_y = -omega_z*rpr_S_dot_t;
+        const real rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y +
+            axis_x_rpr_axes1_y*rpr_u_1_t;
         /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rpr_rel_o_y = rpr_u_1_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y;
-        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o;
-        /* (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y;
-        const real rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y;
+        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y;
         /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
-        const real rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t -
-            rpr_axis_x_y*rpr_u_1_t_2;
-        const real rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y;
+        const real rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x;
+        const real rpr_acc_2_o_in_axes1_x = axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
+            axis_x_rpr_axes1_x*rpr_u_1_t;
+        const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
+        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_phi_2_o_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_h_2_in_spec1_y*rpr_qdd_1_o;
         /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_mu_1_o_z = rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x +
-            rpr_g_tip_x*rpr_h_1_y - rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
+            rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+            rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+        /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rpr_d_c_in_axes1_xy = inv_rpr_root_1*rpr_h_2_in_spec1_y;
+        const real rpr_d_c_in_axes1_yy = -inv_rpr_root_1*rpr_h_2_in_spec1_x -
+            inv_rpr_root_1*(rpr_h_2_in_spec1_x + inv_rpr_root_1*rpr_J_group_1_in_axes1_zz);
         /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z -
-            rpr_h_2_x*rpr_qdd_1_o;
+        const real rpr_c_o_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
+        /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+        const real rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t -
+            axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
+        const real rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t +
+            axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
+        const real rpr_Q_xx = -2*axis_x_rpr_axes1_y*rpr_Q_t_2;
+        const real rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3;
+        const real rpr_Q_yy = -2*axis_x_rpr_axes1_x*rpr_Q_t_3;
         /* (rpr-U) velocity and gravity terms of the leg force */
-        const real rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y;
-        const real rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y;
+        const real rpr_U_x = axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+            axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
+        const real rpr_U_y = axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+            axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+        /* (M_ta) coupling block of M */
+        const real rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y;
+        const real rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y;
+        /* (M_aa) rotational block of M */
+        const real rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y;
         /* (Z_a) rotational part of Z */
-        const real rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y;
+        const real rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_t_4 : rpr_Q_t_4;  /* total_rpr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_t_5 : rpr_Q_t_5;  /* total_rpr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_t_6 : rpr_Q_t_6;  /* total_rpr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rpr_M_ta_t : rpr_M_ta_t;  /* total_rpr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rpr_M_ta_t_2 : rpr_M_ta_t_2;  /* total_rpr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rpr_M_aa_t : rpr_M_aa_t;  /* total_rpr_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rpr_U_in_base_x : rpr_U_in_base_x;  /* total_rpr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rpr_U_in_base_y : rpr_U_in_base_y;  /* total_rpr_y */
-        terms[8*count + k] = add ? terms[8*count + k] + rpr_Z_a_t : rpr_Z_a_t;  /* total_rpr_z */
-        o[0*count + k] = rpr_axis_x_x;
-        o[1*count + k] = rpr_axis_x_y;
+        const real rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_xx : rpr_Q_xx;  /* M_tt_rpr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_xy : rpr_Q_xy;  /* M_tt_rpr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_yy : rpr_Q_yy;  /* M_tt_rpr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rpr_M_ta_t : rpr_M_ta_t;  /* M_ta_rpr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rpr_M_ta_t_2 : rpr_M_ta_t_2;  /* M_ta_rpr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rpr_M_aa_t : rpr_M_aa_t;  /* M_aa_rpr_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + rpr_U_x : rpr_U_x;  /* Z_t_rpr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rpr_U_y : rpr_U_y;  /* Z_t_rpr_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + rpr_Z_a_t : rpr_Z_a_t;  /* Z_a_rpr_z */
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[0*count + k] = axis_x_rpr_axes1_x;
+        o[1*count + k] = axis_x_rpr_axes1_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
-        o[4*count + k] = rpr_axis_x_x + (rpr_axis_x_y + rpr_H_a_2_z);
+        o[4*count + k] = axis_x_rpr_axes1_x + (axis_x_rpr_axes1_y + rpr_H_a_2_z);
         o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -1585,31 +1599,31 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -1619,176 +1633,186 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
-            rrr_d_Gamma_2_t_2);
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
-        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
-            rrr_d_Gamma_2_t_2);
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
-            rrr_d_Gamma_2_y*rrr_w_2_t;
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
-            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
-        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
-        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
-        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
-        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+            axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+            axis_x_rrr_axes2_x*rrr_u_1_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
-        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
-            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
+            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
-            rrr_acc_2_o_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
+        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
+            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
+            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
-        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
+        const real rrr_Q_t = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
-        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
-        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -1817,168 +1841,170 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
-        const real prr_w_2_t = inv_prr_v_2_t_2*prr_s_2;
-        const real prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
-        /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz;
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2;
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t;
-        /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t;
-        const real prr__r0_y_2 = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
-        /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prr_d_c_xx = prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass -
-            prr_d_Gamma_1_t*prr_s_2) - prr_h_2_y*prr_w_2_t;
-        const real prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 -
-            prr__r0_x*prr__r0_y_2;
-        /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prr_Q_t = prr_d_c_xx + prr__r0_y*prr__r0_y_2 + prr_d_Gamma_2_y*prr_w_2_t_2 +
-            prr_h_2_x*prr_w_2_t_2;
-        const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-        const real prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 -
-            axis_y_prr_axes2_in_base_y*prr_d_c_xy;
-        const real prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy +
-            axis_y_prr_axes2_in_base_y*prr_Q_t_2;
-        const real prr_Q_t_5 = 2*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx;
-        const real prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 +
-            axis_y_prr_axes2_in_base_y*prr_Q_t_3;
-        const real prr_Q_t_7 = 2*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx;
-        /* (M_ta) coupling block of M */
-        const real prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x;
-        const real prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
+        /* (prr-w_1) reciprocal vector 1 */
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
+        /* (prr-w_2) reciprocal vector 2 */
+        const real prr_w_2_t = prr_s_2*prr_w_1_t;
+        const real prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
-        /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_t = omega_z*prr_S_dot_t_2;
-        const real prr_u_1_t_2 = omega_z*prr_S_dot_t;
         /* (prr-W_2) centripetal tensor of link 2 */
         const real prr_W_2_t = prr_qd_2*prr_qd_2;
         /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_tip_x = axis_y_prr_axes2_in_base_x*prr_u_1_t_2 -
-            axis_y_prr_axes2_in_base_y*prr_u_1_t;
-        const real prr_u_1_tip_y = -axis_y_prr_axes2_in_base_x*prr_u_1_t -
-            axis_y_prr_axes2_in_base_y*prr_u_1_t_2;
+        const real prr_u_1_x = -omega_z*prr_S_dot_t_2;
+        const real prr_u_1_t = omega_z*prr_S_dot_t;
+        const real prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x +
+            axis_y_prr_axes2_x*prr_u_1_t;
+        const real prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x -
+            axis_x_prr_axes2_x*prr_u_1_t;
         /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y);
-        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2;
-        const real prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2;
-        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o -
-            prr_acc_2_o_x*prr_h_2_y;
+        const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x +
+            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
+        /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real prr_B_2_o_in_axes2_xy = prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y +
+            prr_rel_o_in_axes2_x*prr_s_2);
         /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
-        const real prr_acc_1_o_x = -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t -
-            prr_s_2*prr_u_1_tip_y;
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x +
+            prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - prr_s_2*prr_u_1_in_axes2_y;
         /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
-        const real prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass;
-        /* (prr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t);
+        const real prr_link1_mass = m->prr_link1_mass[i];
+        const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
+        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
+            prr_g_in_axes0_y*prr_s_2;
+        const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
+            prr_c_2*prr_g_in_axes0_y;
+        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
+        /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t;
+        const real prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2;
+        const real prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t;
+        /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
+        /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
+            prr_h_2_in_spec2_y*prr_w_2_t - prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass +
+            prr_d_Gamma_1_t*prr_s_2);
+        const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
+            prr_h_2_in_spec2_y*prr_w_2_in_axes2_y - prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x;
         /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real prr_c_o_x = prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x -
-            prr_h_2_y*prr_qdd_2_o;
-        const real prr_c_o_y = prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o -
-            prr_G_o_t*prr_c_2;
+        const real prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z -
+            prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x);
+        const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x;
+        const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x +
+            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2;
+        /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real prr_Q_t = prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_y +
+            prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y;
+        const real prr_Q_t_2 = R(0.5)*prr_Q_t;
+        const real prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 -
+            axis_x_prr_axes2_x*prr_d_c_in_axes2_xy;
+        const real prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 +
+            axis_y_prr_axes2_x*prr_d_c_in_axes2_xy;
+        const real prr_Q_xx = 2*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
+        const real prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4;
+        const real prr_Q_yy = 2*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
         /* (prr-U) velocity and gravity terms of the leg force */
-        const real prr_U_in_base_x = -axis_y_prr_axes2_in_base_x*prr_c_o_y -
-            axis_y_prr_axes2_in_base_y*prr_c_o_x;
-        const real prr_U_in_base_y = axis_y_prr_axes2_in_base_x*prr_c_o_x -
-            axis_y_prr_axes2_in_base_y*prr_c_o_y;
+        const real prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+            axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+        const real prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+            axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
+        /* (M_ta) coupling block of M */
+        const real prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y;
+        const real prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y;
+        /* (M_aa) rotational block of M */
+        const real prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y;
         /* (Z_a) rotational part of Z */
-        const real prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
+        const real prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y -
-            prr_q_in_base_y*prr_w_1_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_t_5 : prr_Q_t_5;  /* total_prr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_t_6 : prr_Q_t_6;  /* total_prr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_t_7 : prr_Q_t_7;  /* total_prr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* total_prr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* total_prr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* total_prr_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + prr_U_in_base_x : prr_U_in_base_x;  /* total_prr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + prr_U_in_base_y : prr_U_in_base_y;  /* total_prr_y */
-        terms[8*count + k] = add ? terms[8*count + k] + prr_Z_a_t : prr_Z_a_t;  /* total_prr_z */
-        o[0*count + k] = prr_w_1_in_base_x;
-        o[1*count + k] = prr_w_1_in_base_y;
+        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_xx : prr_Q_xx;  /* M_tt_prr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_xy : prr_Q_xy;  /* M_tt_prr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_yy : prr_Q_yy;  /* M_tt_prr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* M_ta_prr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* M_ta_prr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* M_aa_prr_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + prr_U_x : prr_U_x;  /* Z_t_prr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + prr_U_y : prr_U_y;  /* Z_t_prr_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + prr_Z_a_t : prr_Z_a_t;  /* Z_a_prr_z */
+        /* (prr-w_1) reciprocal vector 1 */
+        o[0*count + k] = prr_w_1_x;
+        o[1*count + k] = prr_w_1_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
-        o[5*count + k] = prr_w_1_in_base_x + (prr_w_1_in_base_y + prr_H_a_1_z);
+        o[5*count + k] = prr_w_1_x + (prr_w_1_y + prr_H_a_1_z);
         const real prr_size = m->prr_size[i];
         o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2000,64 +2026,69 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_prr_xx = sums[18*w + k];
+        const real M_tt_rpr_xx = sums[0*w + k];
+        const real M_tt_rrr_xx = sums[9*w + k];
         const real m_star = m->m_star;
-        const real total_prr_xx = sums[18*w + k];
-        const real total_rpr_xx = sums[0*w + k];
-        const real total_rrr_xx = sums[9*w + k];
-        const real M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx;
-        const real total_prr_xy = sums[19*w + k];
-        const real total_rpr_xy = sums[1*w + k];
-        const real total_rrr_xy = sums[10*w + k];
-        const real M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy;
-        const real total_prr_yy = sums[20*w + k];
-        const real total_rpr_yy = sums[2*w + k];
-        const real total_rrr_yy = sums[11*w + k];
-        const real M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy;
+        const real M_tt_xx = M_tt_prr_xx + M_tt_rpr_xx + M_tt_rrr_xx + m_star;
+        const real M_tt_prr_xy = sums[19*w + k];
+        const real M_tt_rpr_xy = sums[1*w + k];
+        const real M_tt_rrr_xy = sums[10*w + k];
+        const real M_tt_xy = M_tt_prr_xy + M_tt_rpr_xy + M_tt_rrr_xy;
+        const real M_tt_prr_yy = sums[20*w + k];
+        const real M_tt_rpr_yy = sums[2*w + k];
+        const real M_tt_rrr_yy = sums[11*w + k];
+        const real M_tt_yy = M_tt_prr_yy + M_tt_rpr_yy + M_tt_rrr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[8*w + k];
-        const real total_prr_xz = sums[21*w + k];
-        const real total_rpr_xz = sums[3*w + k];
-        const real total_rrr_xz = sums[12*w + k];
-        const real M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz;
-        const real h_star_in_base_x = s[7*w + k];
-        const real total_prr_yz = sums[22*w + k];
-        const real total_rpr_yz = sums[4*w + k];
-        const real total_rrr_yz = sums[13*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz;
+        const real M_ta_prr_xz = sums[21*w + k];
+        const real M_ta_rpr_xz = sums[3*w + k];
+        const real M_ta_rrr_xz = sums[12*w + k];
+        const real h_star_y = s[8*w + k];
+        const real M_ta_xz = M_ta_prr_xz + M_ta_rpr_xz + M_ta_rrr_xz - h_star_y;
+        const real M_ta_prr_yz = sums[22*w + k];
+        const real M_ta_rpr_yz = sums[4*w + k];
+        const real M_ta_rrr_yz = sums[13*w + k];
+        const real h_star_x = s[7*w + k];
+        const real M_ta_yz = M_ta_prr_yz + M_ta_rpr_yz + M_ta_rrr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_prr_zz = sums[23*w + k];
-        const real total_rpr_zz = sums[5*w + k];
-        const real total_rrr_zz = sums[14*w + k];
-        const real M_aa_zz = total_prr_zz - J_star_t_6 - total_rpr_zz - total_rrr_zz;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_prr_zz = sums[23*w + k];
+        const real M_aa_rpr_zz = sums[5*w + k];
+        const real M_aa_rrr_zz = sums[14*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prr_zz + M_aa_rpr_zz + M_aa_rrr_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[9*w + k];
-        const real total_prr_x = sums[24*w + k];
-        const real total_rpr_x = sums[6*w + k];
-        const real total_rrr_x = sums[15*w + k];
-        const real Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x;
+        const real Z_t_prr_x = sums[24*w + k];
+        const real Z_t_rpr_x = sums[6*w + k];
+        const real Z_t_rrr_x = sums[15*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prr_x + Z_t_rpr_x + Z_t_rrr_x;
         const real Z_p_y = s[10*w + k];
-        const real total_prr_y = sums[25*w + k];
-        const real total_rpr_y = sums[7*w + k];
-        const real total_rrr_y = sums[16*w + k];
-        const real Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y;
+        const real Z_t_prr_y = sums[25*w + k];
+        const real Z_t_rpr_y = sums[7*w + k];
+        const real Z_t_rrr_y = sums[16*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prr_y + Z_t_rpr_y + Z_t_rrr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[11*w + k];
-        const real total_prr_z = sums[26*w + k];
-        const real total_rpr_z = sums[8*w + k];
-        const real total_rrr_z = sums[17*w + k];
-        const real Z_a_z = total_prr_z + total_rpr_z + total_rrr_z - Z_q_t;
+        const real Z_a_prr_z = sums[26*w + k];
+        const real Z_a_rpr_z = sums[8*w + k];
+        const real Z_a_rrr_z = sums[17*w + k];
+        const real Z_q_z = s[11*w + k];
+        const real Z_a_z = Z_a_prr_z + Z_a_rpr_z + Z_a_rrr_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_xz;
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[8*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
         t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
             + (Z_t_y + Z_a_z)));
@@ -2131,16 +2162,16 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
-        s[4*w + k] = h_star_in_base_x;
-        s[5*w + k] = h_star_in_base_y;
+        s[4*w + k] = h_star_x;
+        s[5*w + k] = h_star_y;
     }
 }
 
@@ -2155,59 +2186,62 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
         /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
-        /* (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y;
+        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
+        /* (rpr-w_2) reciprocal vector 2 */
+        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
+        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
         /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_d_c_yy = -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x +
-            inv_rpr_root_1*rpr_J_group_1_zz);
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_d_c_in_axes1_yy = -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y -
+            rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
+            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y);
         /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rpr_Q_t = R(0.5)*rpr_d_c_yy;
-        const real rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t;
-        const real rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t;
-        const real rpr_Q_t_4 = 2*rpr_Q_t_2*rpr_axis_x_y;
-        const real rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y;
-        const real rpr_Q_t_6 = 2*rpr_Q_t_3*rpr_axis_x_x;
+        const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
+        const real rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x;
+        const real rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y;
+        const real rpr_Q_xx = -2*rpr_Q_t_2*rpr_w_2_y;
+        const real rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y;
+        const real rpr_Q_yy = -2*rpr_Q_t_3*rpr_w_2_x;
         /* (M_ta) coupling block of M */
-        const real rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x;
-        const real rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x;
+        const real rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y;
+        const real rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y;
         /* (M_aa) rotational block of M */
-        const real rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_t_4 : rpr_Q_t_4;  /* total_rpr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_t_5 : rpr_Q_t_5;  /* total_rpr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_t_6 : rpr_Q_t_6;  /* total_rpr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rpr_M_ta_t : rpr_M_ta_t;  /* total_rpr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rpr_M_ta_t_2 : rpr_M_ta_t_2;  /* total_rpr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rpr_M_aa_t : rpr_M_aa_t;  /* total_rpr_zz */
+        const real rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_Q_xx : rpr_Q_xx;  /* M_tt_rpr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_Q_xy : rpr_Q_xy;  /* M_tt_rpr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_Q_yy : rpr_Q_yy;  /* M_tt_rpr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rpr_M_ta_t : rpr_M_ta_t;  /* M_ta_rpr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rpr_M_ta_t_2 : rpr_M_ta_t_2;  /* M_ta_rpr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rpr_M_aa_t : rpr_M_aa_t;  /* M_aa_rpr_zz */
         o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -2231,31 +2265,31 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2265,85 +2299,87 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
         /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
         const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
-            rrr_d_Gamma_2_t_2);
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
+            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
-        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
-            rrr_d_Gamma_2_t_2);
+        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
+            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
         const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
-            rrr_d_Gamma_2_y*rrr_w_2_t;
+        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
-            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
-        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
-        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
+        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
+        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
+        const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
+            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
+            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
+        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
-        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2367,94 +2403,93 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
-        const real prr_w_2_t = inv_prr_v_2_t_2*prr_s_2;
-        const real prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2;
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
+        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+        /* (prr-w_2) reciprocal vector 2 */
+        const real prr_w_2_t = prr_s_2*prr_w_1_t;
+        const real prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t;
         /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz;
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2;
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t;
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t;
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2;
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t;
         /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
            inertia and weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t;
-        const real prr__r0_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
+        const real prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
         /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real prr_d_c_xx = prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass -
-            prr_d_Gamma_1_t*prr_s_2) - prr_h_2_y*prr_w_2_t;
-        const real prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 -
-            prr__r0_x*prr__r0_y;
+        const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
+            prr_h_2_in_spec2_y*prr_w_2_t - prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass +
+            prr_d_Gamma_1_t*prr_s_2);
+        const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
+            prr_h_2_in_spec2_y*prr_w_2_in_axes2_y - prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x;
         /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prr_Q_t = prr_d_c_xx + prr__r0_y*(prr_c_2*prr_w_1_t - prr_s_2) +
-            prr_d_Gamma_2_y*prr_w_2_t_2 + prr_h_2_x*prr_w_2_t_2;
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_Q_t = prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*(prr_c_2*prr_w_1_t_2 -
+            prr_s_2) + prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y +
+            prr_h_2_in_spec2_x*prr_w_2_in_axes2_y;
         const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-        const real prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 -
-            axis_y_prr_axes2_in_base_y*prr_d_c_xy;
-        const real prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy +
-            axis_y_prr_axes2_in_base_y*prr_Q_t_2;
-        const real prr_Q_t_5 = 2*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx;
-        const real prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 +
-            axis_y_prr_axes2_in_base_y*prr_Q_t_3;
-        const real prr_Q_t_7 = 2*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx;
+        const real prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 -
+            axis_x_prr_axes2_x*prr_d_c_in_axes2_xy;
+        const real prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 +
+            axis_y_prr_axes2_x*prr_d_c_in_axes2_xy;
+        const real prr_Q_xx = 2*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
+        const real prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4;
+        const real prr_Q_yy = 2*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
         /* (M_ta) coupling block of M */
-        const real prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x;
-        const real prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x;
+        const real prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y;
+        const real prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y;
         /* (M_aa) rotational block of M */
-        const real prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_t_5 : prr_Q_t_5;  /* total_prr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_t_6 : prr_Q_t_6;  /* total_prr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_t_7 : prr_Q_t_7;  /* total_prr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* total_prr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* total_prr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* total_prr_zz */
+        const real prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_Q_xx : prr_Q_xx;  /* M_tt_prr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prr_Q_xy : prr_Q_xy;  /* M_tt_prr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prr_Q_yy : prr_Q_yy;  /* M_tt_prr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + prr_M_ta_t : prr_M_ta_t;  /* M_ta_prr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + prr_M_ta_t_2 : prr_M_ta_t_2;  /* M_ta_prr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + prr_M_aa_t : prr_M_aa_t;  /* M_aa_prr_zz */
         const real prr_size = m->prr_size[i];
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[1*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2471,44 +2506,47 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_prr_xx = sums[12*w + k];
+        const real M_tt_rpr_xx = sums[0*w + k];
+        const real M_tt_rrr_xx = sums[6*w + k];
         const real m_star = m->m_star;
-        const real total_prr_xx = sums[12*w + k];
-        const real total_rpr_xx = sums[0*w + k];
-        const real total_rrr_xx = sums[6*w + k];
-        const real M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx;
-        const real total_prr_xy = sums[13*w + k];
-        const real total_rpr_xy = sums[1*w + k];
-        const real total_rrr_xy = sums[7*w + k];
-        const real M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy;
-        const real total_prr_yy = sums[14*w + k];
-        const real total_rpr_yy = sums[2*w + k];
-        const real total_rrr_yy = sums[8*w + k];
-        const real M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy;
+        const real M_tt_xx = M_tt_prr_xx + M_tt_rpr_xx + M_tt_rrr_xx + m_star;
+        const real M_tt_prr_xy = sums[13*w + k];
+        const real M_tt_rpr_xy = sums[1*w + k];
+        const real M_tt_rrr_xy = sums[7*w + k];
+        const real M_tt_xy = M_tt_prr_xy + M_tt_rpr_xy + M_tt_rrr_xy;
+        const real M_tt_prr_yy = sums[14*w + k];
+        const real M_tt_rpr_yy = sums[2*w + k];
+        const real M_tt_rrr_yy = sums[8*w + k];
+        const real M_tt_yy = M_tt_prr_yy + M_tt_rpr_yy + M_tt_rrr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[5*w + k];
-        const real total_prr_xz = sums[15*w + k];
-        const real total_rpr_xz = sums[3*w + k];
-        const real total_rrr_xz = sums[9*w + k];
-        const real M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz;
-        const real h_star_in_base_x = s[4*w + k];
-        const real total_prr_yz = sums[16*w + k];
-        const real total_rpr_yz = sums[4*w + k];
-        const real total_rrr_yz = sums[10*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz;
+        const real M_ta_prr_xz = sums[15*w + k];
+        const real M_ta_rpr_xz = sums[3*w + k];
+        const real M_ta_rrr_xz = sums[9*w + k];
+        const real h_star_y = s[5*w + k];
+        const real M_ta_xz = M_ta_prr_xz + M_ta_rpr_xz + M_ta_rrr_xz - h_star_y;
+        const real M_ta_prr_yz = sums[16*w + k];
+        const real M_ta_rpr_yz = sums[4*w + k];
+        const real M_ta_rrr_yz = sums[10*w + k];
+        const real h_star_x = s[4*w + k];
+        const real M_ta_yz = M_ta_prr_yz + M_ta_rpr_yz + M_ta_rrr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_prr_zz = sums[17*w + k];
-        const real total_rpr_zz = sums[5*w + k];
-        const real total_rrr_zz = sums[11*w + k];
-        const real M_aa_zz = total_prr_zz - J_star_t_6 - total_rpr_zz - total_rrr_zz;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_prr_zz = sums[17*w + k];
+        const real M_aa_rpr_zz = sums[5*w + k];
+        const real M_aa_rrr_zz = sums[11*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prr_zz + M_aa_rpr_zz + M_aa_rrr_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_xz;
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[8*w + k] = M_aa_zz;
         t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
@@ -2585,22 +2623,22 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -2610,7 +2648,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[6*w + k] = omega_z;
         s[7*w + k] = Z_p_x;
         s[8*w + k] = Z_p_y;
-        s[9*w + k] = Z_q_t;
+        s[9*w + k] = Z_q_z;
     }
 }
 
@@ -2625,90 +2663,94 @@ INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
         /* (rpr-S_dot) velocity of the connection point */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
+        /* (rpr-W_1) centripetal tensor of link 1 */
+        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
         /* (rpr-u_1) centripetal acceleration of the connection point */
         const real rpr_u_1_t = omega_z*rpr_S_dot_t_2;
-        const real rpr_u_1_t_2 = omega_z*rpr_S_dot_t;
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-u_1) centripetal acceleration of the connection point */
-        const real rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2;
+        const real rpr_u_1_y = -omega_z*rpr_S_dot_t;
+        const real rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y +
+            axis_x_rpr_axes1_y*rpr_u_1_t;
         /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rpr_rel_o_y = rpr_u_1_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y;
-        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o;
-        /* (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y;
-        const real rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y;
+        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y;
         /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
-        const real rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t -
-            rpr_axis_x_y*rpr_u_1_t_2;
-        const real rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y;
+        const real rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x;
+        const real rpr_acc_2_o_in_axes1_x = axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
+            axis_x_rpr_axes1_x*rpr_u_1_t;
+        const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
+        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_phi_2_o_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_h_2_in_spec1_y*rpr_qdd_1_o;
         /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_mu_1_o_z = rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x +
-            rpr_g_tip_x*rpr_h_1_y - rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
+            rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+            rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
         /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z -
-            rpr_h_2_x*rpr_qdd_1_o;
+        const real rpr_c_o_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
         /* (rpr-U) velocity and gravity terms of the leg force */
-        const real rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y;
-        const real rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y;
+        const real rpr_U_x = axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+            axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
+        const real rpr_U_y = axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+            axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
         /* (Z_a) rotational part of Z */
-        const real rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_U_in_base_x : rpr_U_in_base_x;  /* total_rpr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rpr_U_in_base_y : rpr_U_in_base_y;  /* total_rpr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rpr_Z_a_t : rpr_Z_a_t;  /* total_rpr_z */
+        const real rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_U_x : rpr_U_x;  /* Z_t_rpr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_U_y : rpr_U_y;  /* Z_t_rpr_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_Z_a_t : rpr_Z_a_t;  /* Z_a_rpr_z */
         o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -2732,31 +2774,31 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2766,124 +2808,129 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
-        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+            axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+            axis_x_rrr_axes2_x*rrr_u_1_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
-        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
-            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
+            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
-            rrr_acc_2_o_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
-        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
-        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2907,112 +2954,110 @@ INLINE void Z_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2_t = -1/prr_v_2_in_axes0_y;
+        const real prr_qd_2 = -prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
-        /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_t = omega_z*prr_S_dot_t_2;
-        const real prr_u_1_t_2 = omega_z*prr_S_dot_t;
         /* (prr-W_2) centripetal tensor of link 2 */
         const real prr_W_2_t = prr_qd_2*prr_qd_2;
         /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_tip_x = axis_y_prr_axes2_in_base_x*prr_u_1_t_2 -
-            axis_y_prr_axes2_in_base_y*prr_u_1_t;
-        const real prr_u_1_tip_y = -axis_y_prr_axes2_in_base_x*prr_u_1_t -
-            axis_y_prr_axes2_in_base_y*prr_u_1_t_2;
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_u_1_x = -omega_z*prr_S_dot_t_2;
+        const real prr_u_1_t = omega_z*prr_S_dot_t;
+        const real prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x +
+            axis_y_prr_axes2_x*prr_u_1_t;
+        const real prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x -
+            axis_x_prr_axes2_x*prr_u_1_t;
         /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y);
-        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2;
-        const real prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2;
-        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o -
-            prr_acc_2_o_x*prr_h_2_y;
+        const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x +
+            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
+        /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y +
+            prr_rel_o_in_axes2_x*prr_s_2);
         /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
-        const real prr_acc_1_o_x = -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t -
-            prr_s_2*prr_u_1_tip_y;
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x +
+            prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - prr_s_2*prr_u_1_in_axes2_y;
         /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass;
-        /* (prr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t);
+        const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
+        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
+            prr_g_in_axes0_y*prr_s_2;
+        const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
+            prr_c_2*prr_g_in_axes0_y;
+        /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
         /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real prr_c_o_x = prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x -
-            prr_h_2_y*prr_qdd_2_o;
-        const real prr_c_o_y = prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o -
-            prr_G_o_t*prr_c_2;
+        const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
+            prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x);
+        const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x;
+        const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x +
+            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2;
         /* (prr-U) velocity and gravity terms of the leg force */
-        const real prr_U_in_base_x = -axis_y_prr_axes2_in_base_x*prr_c_o_y -
-            axis_y_prr_axes2_in_base_y*prr_c_o_x;
-        const real prr_U_in_base_y = axis_y_prr_axes2_in_base_x*prr_c_o_x -
-            axis_y_prr_axes2_in_base_y*prr_c_o_y;
+        const real prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+            axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+        const real prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+            axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_U_in_base_x : prr_U_in_base_x;  /* total_prr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_U_in_base_y : prr_U_in_base_y;  /* total_prr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_Z_a_t : prr_Z_a_t;  /* total_prr_z */
+        const real prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_U_x : prr_U_x;  /* Z_t_prr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prr_U_y : prr_U_y;  /* Z_t_prr_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + prr_Z_a_t : prr_Z_a_t;  /* Z_a_prr_z */
         const real prr_size = m->prr_size[i];
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[1*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -3029,23 +3074,25 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[7*w + k];
-        const real total_prr_x = sums[6*w + k];
-        const real total_rpr_x = sums[0*w + k];
-        const real total_rrr_x = sums[3*w + k];
-        const real Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x;
+        const real Z_t_prr_x = sums[6*w + k];
+        const real Z_t_rpr_x = sums[0*w + k];
+        const real Z_t_rrr_x = sums[3*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prr_x + Z_t_rpr_x + Z_t_rrr_x;
         const real Z_p_y = s[8*w + k];
-        const real total_prr_y = sums[7*w + k];
-        const real total_rpr_y = sums[1*w + k];
-        const real total_rrr_y = sums[4*w + k];
-        const real Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y;
+        const real Z_t_prr_y = sums[7*w + k];
+        const real Z_t_rpr_y = sums[1*w + k];
+        const real Z_t_rrr_y = sums[4*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prr_y + Z_t_rpr_y + Z_t_rrr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[9*w + k];
-        const real total_prr_z = sums[8*w + k];
-        const real total_rpr_z = sums[2*w + k];
-        const real total_rrr_z = sums[5*w + k];
-        const real Z_a_z = total_prr_z + total_rpr_z + total_rrr_z - Z_q_t;
+        const real Z_a_prr_z = sums[8*w + k];
+        const real Z_a_rpr_z = sums[2*w + k];
+        const real Z_a_rrr_z = sums[5*w + k];
+        const real Z_q_z = s[9*w + k];
+        const real Z_a_z = Z_a_prr_z + Z_a_rpr_z + Z_a_rrr_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
         t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
     }
@@ -3133,37 +3180,40 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
         /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
+        /* (rpr-w_2) reciprocal vector 2 */
+        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
+        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y;
-        o[0*count + k] = rpr_axis_x_x;
-        o[1*count + k] = rpr_axis_x_y;
+        const real rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x;
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[0*count + k] = rpr_w_2_x;
+        o[1*count + k] = rpr_w_2_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
-        o[4*count + k] = rpr_axis_x_x + (rpr_axis_x_y + rpr_H_a_2_z);
+        o[4*count + k] = rpr_w_2_x + (rpr_w_2_y + rpr_H_a_2_z);
         o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -3191,31 +3241,31 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -3225,43 +3275,46 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
+            rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t);
+        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -3289,59 +3342,55 @@ INLINE void H_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_c_2*prr_platform_joint_offset_x;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y -
-            prr_q_in_base_y*prr_w_1_in_base_x;
-        o[0*count + k] = prr_w_1_in_base_x;
-        o[1*count + k] = prr_w_1_in_base_y;
+        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        /* (prr-w_1) reciprocal vector 1 */
+        o[0*count + k] = prr_w_1_x;
+        o[1*count + k] = prr_w_1_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
-        o[5*count + k] = prr_w_1_in_base_x + (prr_w_1_in_base_y + prr_H_a_1_z);
+        o[5*count + k] = prr_w_1_x + (prr_w_1_y + prr_H_a_1_z);
         const real prr_size = m->prr_size[i];
         o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(-prr_v_2_t) > TOLERANCE*prr_size);
+        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -3420,13 +3469,13 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real t_ddot_y = A_1;
         const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3434,11 +3483,11 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
-        const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
+        const real f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y;
+        const real f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x;
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y;
+        const real J_star_zz = m->J_star_zz;
+        const real mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -3466,96 +3515,105 @@ INLINE void required_legs_rpr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
+        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
+        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
         /* (rpr-S_dot) velocity of the connection point */
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
         /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y;
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
         /* (rpr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y;
+        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x;
+        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
         /* (rpr-S_ddot) acceleration of the connection point */
         const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
         const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
-        const real rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y;
+        const real rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
+            axis_x_rpr_axes1_y*rpr_S_ddot_x;
         /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_y = rpr_S_ddot_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
         /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
-        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
-        const real rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1;
-        const real rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1;
-        const real rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y -
-            rpr_g_r1_x;
-        const real rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y;
+        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
+        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
+        const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
+        const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
+        const real rpr_acc_2_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
+            axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x;
+        const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
         /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1;
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_phi_2_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_h_2_in_spec1_y*rpr_qdd_1;
         /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_mu_1_z = rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x +
-            rpr_g_r1_x*rpr_h_1_y - rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
+            rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+            rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
         /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z -
-            rpr_h_2_x*rpr_qdd_1;
-        const real rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y;
-        const real rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x;
+        const real rpr_c_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_in_axes1_z -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1;
+        const real rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
+            axis_x_rpr_axes1_y*rpr_c_in_axes1_y;
+        const real rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y -
+            axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rpr_R_a_t = rpr_c_in_base_y*rpr_q_in_base_x - rpr_c_in_base_x*rpr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_c_in_base_x : rpr_c_in_base_x;  /* total_rpr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rpr_c_in_base_y : rpr_c_in_base_y;  /* total_rpr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rpr_R_a_t : rpr_R_a_t;  /* total_rpr_z */
-        o[0*count + k] = rpr_axis_x_x;
-        o[1*count + k] = rpr_axis_x_y;
+        const real rpr_R_a_t = rpr_c_x*rpr_q_y - rpr_c_y*rpr_q_x;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+        const real rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_c_x : rpr_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rpr_c_y : rpr_c_y;  /* R_t_t_2 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + rpr_R_a_t : rpr_R_a_t;  /* R_a_rpr_z */
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[0*count + k] = axis_x_rpr_axes1_x;
+        o[1*count + k] = axis_x_rpr_axes1_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
         o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
@@ -3584,31 +3642,31 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -3618,132 +3676,139 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
-        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1) acceleration tensor of link 1 */
+        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
         /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
-            rrr_acc_2_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
-        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
-        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
-            axis_y_rrr_axes2_in_base_y*rrr_c_x;
-        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
-            axis_y_rrr_axes2_in_base_x*rrr_c_x;
+        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
+            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
+        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
+            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* total_rrr_z */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_x : rrr_c_x;  /* R_t_t_3 */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_y : rrr_c_y;  /* R_t_t_4 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* R_a_rrr_z */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -3771,127 +3836,126 @@ INLINE void required_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
+        /* (prr-w_1) reciprocal vector 1 */
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
         /* (prr-W_2) centripetal tensor of link 2 */
         const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
-        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y -
-            prr_q_in_base_y*prr_w_1_in_base_x;
         /* (prr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y;
+        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x;
+        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
         /* (prr-S_ddot) acceleration of the connection point */
         const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
         const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_tip_x = axis_y_prr_axes2_in_base_y*prr_S_ddot_x -
-            axis_y_prr_axes2_in_base_x*prr_S_ddot_y;
-        const real prr_S_ddot_tip_y = axis_y_prr_axes2_in_base_x*prr_S_ddot_x +
-            axis_y_prr_axes2_in_base_y*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x -
+            axis_y_prr_axes2_x*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
+            axis_y_prr_axes2_x*prr_S_ddot_x;
         /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-qdd_1) acceleration of joint 1 */
-        const real prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2);
-        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2;
-        const real prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2;
-        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 -
-            prr_acc_2_x*prr_h_2_y;
+        const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
+            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
+        /* (prr-B_2) acceleration tensor of link 2 */
+        const real prr_B_2_in_axes2_xy = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
+            prr_rel_in_axes2_x*prr_s_2);
         /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prr_acc_1_x = -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x -
-            prr_qdd_2*prr_v_2_t;
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x +
+            prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x - prr_S_ddot_in_axes2_y*prr_s_2;
         /* (prr-f_1) inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_f_1_x = prr_acc_1_x*prr_link1_mass;
-        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t);
+        const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass;
+        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
+            prr_g_in_axes0_y*prr_s_2;
+        const real prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
+            prr_c_2*prr_g_in_axes0_y;
+        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y;
         /* (prr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x -
-            prr_h_2_y*prr_qdd_2;
-        const real prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 -
-            prr_G_t*prr_c_2;
-        const real prr_c_in_base_x = axis_y_prr_axes2_in_base_x*prr_c_y +
-            axis_y_prr_axes2_in_base_y*prr_c_x;
-        const real prr_c_in_base_y = axis_y_prr_axes2_in_base_y*prr_c_y -
-            axis_y_prr_axes2_in_base_x*prr_c_x;
+        const real prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z -
+            prr_f_1_in_axes0_x*prr_v_2_in_axes0_x);
+        const real prr_c_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 -
+            prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_in_axes0_x;
+        const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x +
+            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t + prr_f_1_in_axes0_x*prr_s_2;
+        const real prr_c_x = axis_x_prr_axes2_x*prr_c_in_axes2_x +
+            axis_y_prr_axes2_x*prr_c_in_axes2_y;
+        const real prr_c_y = axis_x_prr_axes2_x*prr_c_in_axes2_y -
+            axis_y_prr_axes2_x*prr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real prr_R_a_t = prr_c_in_base_y*prr_q_in_base_x - prr_c_in_base_x*prr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_c_in_base_x : prr_c_in_base_x;  /* total_prr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prr_c_in_base_y : prr_c_in_base_y;  /* total_prr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prr_R_a_t : prr_R_a_t;  /* total_prr_z */
-        o[0*count + k] = prr_w_1_in_base_x;
-        o[1*count + k] = prr_w_1_in_base_y;
+        const real prr_R_a_t = prr_c_x*prr_q_y - prr_c_y*prr_q_x;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_c_x : prr_c_x;  /* R_t_t_5 */
+        terms[1*count + k] = add ? terms[1*count + k] + prr_c_y : prr_c_y;  /* R_t_t_6 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + prr_R_a_t : prr_R_a_t;  /* R_a_prr_z */
+        /* (prr-w_1) reciprocal vector 1 */
+        o[0*count + k] = prr_w_1_x;
+        o[1*count + k] = prr_w_1_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
         const real prr_size = m->prr_size[i];
         o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -3911,24 +3975,26 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
+        const real R_t_t_3 = sums[3*w + k];
+        const real R_t_t_5 = sums[6*w + k];
         const real f_p_x = s[10*w + k];
-        const real total_prr_x = sums[6*w + k];
-        const real total_rpr_x = sums[0*w + k];
-        const real total_rrr_x = sums[3*w + k];
-        const real R_t_x = f_p_x - total_prr_x - total_rpr_x - total_rrr_x;
+        const real R_t_x = f_p_x - R_t_t - R_t_t_3 - R_t_t_5;
+        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_t_4 = sums[4*w + k];
+        const real R_t_t_6 = sums[7*w + k];
         const real f_p_y = s[11*w + k];
-        const real total_prr_y = sums[7*w + k];
-        const real total_rpr_y = sums[1*w + k];
-        const real total_rrr_y = sums[4*w + k];
-        const real R_t_y = f_p_y - total_prr_y - total_rpr_y - total_rrr_y;
+        const real R_t_y = f_p_y - R_t_t_2 - R_t_t_4 - R_t_t_6;
         /* (R_a) moment that actuators and external wrench must give */
+        const real R_a_prr_z = sums[8*w + k];
+        const real R_a_rpr_z = sums[2*w + k];
+        const real R_a_rrr_z = sums[5*w + k];
         const real mu_p_z = s[12*w + k];
-        const real total_prr_z = sums[8*w + k];
-        const real total_rpr_z = sums[2*w + k];
-        const real total_rrr_z = sums[5*w + k];
-        const real R_a_z = mu_p_z - total_prr_z - total_rpr_z - total_rrr_z;
+        const real R_a_z = R_a_prr_z + R_a_rpr_z + R_a_rrr_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
+        /* (R_a) moment that actuators and external wrench must give */
         required[2*w + k] = R_a_z;
     }
 }
@@ -4025,24 +4091,25 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t leg,
         const real t_y = s[1*w + j];
         const real rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
             rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
         /* (rpr-q_1) displacement of joint 1 */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
         const real rpr_q_1 = angle(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1);
+        /* (rpr-q_1) displacement of joint 1 */
         o[0*count + k] = rpr_q_1;
+        /* (rpr-q_2) displacement of joint 2 */
         o[1*count + k] = rpr_root_1;
         o[3*count + k] = rpr_q_1 + rpr_root_1;
         o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
@@ -4082,21 +4149,21 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg,
             rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4106,22 +4173,23 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg,
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         /* (rrr-q_1) displacement of joint 1 */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
             inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
         /* (rrr-q_2) displacement of joint 2 */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+        /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
+        /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
@@ -4161,28 +4229,28 @@ INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t leg,
         const real t_y = s[1*w + j];
         const real prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x -
             prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-q_1) displacement of joint 1 */
         const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_q_1_t = prr_branch_1*root(prr_disc_1);
-        const real prr_q_1 = prr_px_1 + prr_q_1_t;
+        const real prr_q_1_t = -prr_branch_1*root(prr_disc_1);
+        const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
         /* (prr-q_2) displacement of joint 2 */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_q_2 =
-            angle(inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy),
-            -inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t);
+            angle(inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t);
+        /* (prr-q_1) displacement of joint 1 */
         o[0*count + k] = prr_q_1;
+        /* (prr-q_2) displacement of joint 2 */
         o[1*count + k] = prr_q_2;
         o[3*count + k] = prr_q_1 + prr_q_2;
         o[2*count + k] = UNLESS(prr_disc_1 >= 0);
@@ -4276,44 +4344,46 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t leg, size_t
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
         /* (rpr-S_dot) velocity of the connection point */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real rpr_S_dot_x = t_dot_x - omega_z*rpr_q_in_base_y;
+        const real rpr_S_dot_x = t_dot_x - omega_z*rpr_q_y;
         const real t_dot_y = s[5*w + j];
-        const real rpr_S_dot_y = t_dot_y + omega_z*rpr_q_in_base_x;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_y = t_dot_y + omega_z*rpr_q_x;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
+        /* (rpr-qd_1) rate of joint 1 */
         o[0*count + k] = rpr_qd_1;
-        o[1*count + k] = rpr_S_dot_tip_x;
-        o[3*count + k] = rpr_qd_1 + rpr_S_dot_tip_x;
+        /* (rpr-qd_2) rate of joint 2 */
+        o[1*count + k] = rpr_S_dot_in_axes1_x;
+        o[3*count + k] = rpr_qd_1 + rpr_S_dot_in_axes1_x;
         o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -4341,31 +4411,31 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4375,54 +4445,55 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y;
         const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y;
         /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y;
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_qd_2 =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
-            rrr_r_1_t*rrr_s_2));
-        o[0*count + k] = -rrr_qd_1;
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x +
+            rrr_r_1_in_axes1_y*rrr_s_2));
+        /* (rrr-qd_1) rate of joint 1 */
+        o[0*count + k] = rrr_qd_1;
+        /* (rrr-qd_2) rate of joint 2 */
         o[1*count + k] = rrr_qd_2;
         o[4*count + k] = rrr_qd_1 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -4450,48 +4521,49 @@ INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t leg, size_t
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_v_2_t =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real prr_S_dot_x = t_dot_x - omega_z*prr_q_in_base_y;
+        const real prr_S_dot_x = t_dot_x - omega_z*prr_q_y;
         const real t_dot_y = s[5*w + j];
-        const real prr_S_dot_y = t_dot_y + omega_z*prr_q_in_base_x;
-        /* (prr-qd_2) rate of joint 2 */
+        const real prr_S_dot_y = t_dot_y + omega_z*prr_q_x;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
+        const real prr_branch_1 = m->prr_branch_1[i];
+        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+        const real prr_v_2_in_axes0_y =
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+        /* (prr-qd_1) rate of joint 1 */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_qd_2 = (prr_S_dot_x*prr_base_frame_xy +
-            prr_S_dot_y*prr_base_frame_yy)/prr_v_2_t;
-        const real prr_qd_2_t = prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_2*(prr_S_x*prr_base_frame_xy
+        const real prr_qd_1_t = (prr_S_dot_x*prr_base_frame_xy +
+            prr_S_dot_y*prr_base_frame_yy)/prr_v_2_in_axes0_y;
+        const real prr_qd_1 = prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx +
+            inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(prr_S_x*prr_base_frame_xy
             + prr_S_y*prr_base_frame_yy);
-        o[0*count + k] = prr_qd_2_t;
-        o[1*count + k] = -prr_qd_2;
-        o[4*count + k] = prr_qd_2_t + prr_qd_2;
+        /* (prr-qd_1) rate of joint 1 */
+        o[0*count + k] = prr_qd_1;
+        /* (prr-qd_2) rate of joint 2 */
+        o[1*count + k] = prr_qd_1_t;
+        o[4*count + k] = prr_qd_1 + prr_qd_1_t;
         const real prr_size = m->prr_size[i];
         o[2*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(-prr_v_2_t) > TOLERANCE*prr_size);
+        o[3*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -4595,62 +4667,64 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t leg
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
         /* (rpr-S_dot) velocity of the connection point */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
         /* (rpr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y;
+        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x;
+        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
         /* (rpr-S_ddot) acceleration of the connection point */
         const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
         const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
         /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y +
-            rpr_qd_1*rpr_qd_1*rpr_root_1;
-        const real rpr_rel_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y -
-            2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
+            axis_x_rpr_axes1_y*rpr_S_ddot_y + rpr_qd_1*rpr_qd_1*rpr_root_1;
+        const real rpr_rel_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
+            axis_x_rpr_axes1_y*rpr_S_ddot_x - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
+        /* (rpr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = rpr_qdd_1;
-        o[1*count + k] = rpr_rel_x;
-        o[3*count + k] = rpr_qdd_1 + rpr_rel_x;
+        /* (rpr-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = rpr_rel_in_axes1_x;
+        o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
         o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -4678,31 +4752,31 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4712,81 +4786,85 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x =
+            -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
-        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x);
-        o[0*count + k] = -rrr_qdd_1;
+        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-qdd_2) acceleration of joint 2 */
+        const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = -rrr_qdd_1_t;
+        /* (rrr-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rrr_qdd_2;
-        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -4814,79 +4892,75 @@ INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t leg
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2_t = -1/prr_v_2_in_axes0_y;
+        const real prr_qd_2 = -prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
         /* (prr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y;
+        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x;
+        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
         /* (prr-S_ddot) acceleration of the connection point */
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
         const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
         const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_tip_y = axis_y_prr_axes2_in_base_x*prr_S_ddot_x +
-            axis_y_prr_axes2_in_base_y*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
+            axis_y_prr_axes2_x*prr_S_ddot_x;
         /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_x = axis_y_prr_axes2_in_base_y*prr_S_ddot_x +
-            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 -
-            axis_y_prr_axes2_in_base_x*prr_S_ddot_y;
+        const real prr_rel_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x +
+            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 - axis_y_prr_axes2_x*prr_S_ddot_y;
         /* (prr-qdd_1) acceleration of joint 1 */
-        const real prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2);
-        const real prr_qdd_1_t = prr_S_ddot_tip_y*prr_s_2 + prr_c_2*prr_rel_x +
-            prr_platform_joint_offset_x*prr_qdd_2*prr_s_2;
-        o[0*count + k] = -prr_qdd_1_t;
-        o[1*count + k] = -prr_qdd_2;
-        o[4*count + k] = prr_qdd_1_t + prr_qdd_2;
+        const real prr_qdd_1_t = prr_qd_2_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
+            prr_rel_in_axes2_x*prr_s_2);
+        const real prr_qdd_1 = prr_c_2*prr_rel_in_axes2_x - prr_S_ddot_in_axes2_y*prr_s_2 -
+            prr_platform_joint_offset_x*prr_qdd_1_t*prr_s_2;
+        /* (prr-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = prr_qdd_1;
+        /* (prr-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = -prr_qdd_1_t;
+        o[4*count + k] = prr_qdd_1 + prr_qdd_1_t;
         const real prr_size = m->prr_size[i];
         o[2*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(-prr_v_2_t) > TOLERANCE*prr_size);
+        o[3*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -4990,94 +5064,100 @@ INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
+        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
+        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
+        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
         /* (rpr-S_dot) velocity of the connection point */
+        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
+        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
         const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_in_base_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x;
+        const real rpr_S_dot_t = omega_z*rpr_q_y;
+        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y;
+        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
+            axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x -
-            rpr_S_dot_x*rpr_axis_x_y);
+        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
+            axis_x_rpr_axes1_y*rpr_S_dot_x);
         /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
         /* (rpr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y;
+        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x;
+        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
         /* (rpr-S_ddot) acceleration of the connection point */
         const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
         const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
-        const real rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y;
+        const real rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
+            axis_x_rpr_axes1_y*rpr_S_ddot_x;
         /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_y = rpr_S_ddot_tip_y - 2*rpr_S_dot_tip_x*rpr_qd_1;
+        const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
         /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y;
+        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
         /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
-        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
-        const real rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1;
-        const real rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1;
-        const real rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y -
-            rpr_g_r1_x;
-        const real rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y;
+        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
+        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
+        const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
+        const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
+        const real rpr_acc_2_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
+            axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x;
+        const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
         /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rpr_J_group_1_zz = m->rpr_J_group_1_zz[i];
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
-        const real rpr_mu_1_z = rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x +
-            rpr_g_r1_x*rpr_h_1_y - rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
+            rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+            rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
         /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z -
-            rpr_h_2_x*rpr_qdd_1;
+        const real rpr_c_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_in_axes1_z -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1;
         /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rpr_link2_mass = m->rpr_link2_mass[i];
-        const real rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 -
-            rpr_acc_2_x*rpr_link2_mass;
-        const real rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass;
-        const real rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y;
-        const real rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x;
-        o[0*count + k] = rpr_c_true_in_base_x;
-        o[1*count + k] = rpr_c_true_in_base_y;
-        o[2*count + k] = rpr_axis_x_x;
-        o[3*count + k] = rpr_axis_x_y;
+        const real rpr_c_true_in_axes1_x = rpr_h_2_in_spec1_y*rpr_qdd_1 -
+            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_acc_2_in_axes1_x*rpr_link2_mass;
+        const real rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass;
+        const real rpr_c_true_x = axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
+            axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
+        const real rpr_c_true_y = axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
+            axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
+        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rpr_c_true_x;
+        o[1*count + k] = rpr_c_true_y;
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[2*count + k] = axis_x_rpr_axes1_x;
+        o[3*count + k] = axis_x_rpr_axes1_y;
         o[4*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -5106,31 +5186,31 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -5140,130 +5220,135 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
-        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1) acceleration tensor of link 1 */
+        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
         /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
-            rrr_acc_2_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
-        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
-        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
-        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
-            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
-        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
-            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
-        o[0*count + k] = rrr_c_true_in_base_x;
-        o[1*count + k] = rrr_c_true_in_base_y;
-        o[2*count + k] = -rrr_w_1_t;
-        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rrr_c_true_x;
+        o[1*count + k] = rrr_c_true_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[2*count + k] = rrr_w_1_x;
+        o[3*count + k] = rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -5292,124 +5377,122 @@ INLINE void legs_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real inv_prr_v_2_t_2 = 1/prr_v_2_t_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_in_base_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_in_base_x;
+        const real prr_S_dot_t = omega_z*prr_q_y;
+        const real prr_S_dot_t_2 = omega_z*prr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
+        /* (prr-w_1) reciprocal vector 1 */
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
         /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy +
+        const real prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy);
         /* (prr-W_2) centripetal tensor of link 2 */
         const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
         /* (prr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y;
+        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x;
+        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
         /* (prr-S_ddot) acceleration of the connection point */
         const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
         const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_tip_x = axis_y_prr_axes2_in_base_y*prr_S_ddot_x -
-            axis_y_prr_axes2_in_base_x*prr_S_ddot_y;
-        const real prr_S_ddot_tip_y = axis_y_prr_axes2_in_base_x*prr_S_ddot_x +
-            axis_y_prr_axes2_in_base_y*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x -
+            axis_y_prr_axes2_x*prr_S_ddot_y;
+        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
+            axis_y_prr_axes2_x*prr_S_ddot_x;
         /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-qdd_1) acceleration of joint 1 */
-        const real prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2);
-        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2;
-        const real prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2;
-        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prr_J_2_zz = m->prr_J_2_zz[i];
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_h_2_y = m->prr_h_2_y[i];
-        const real prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 -
-            prr_acc_2_x*prr_h_2_y;
+        const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
+            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
+        /* (prr-B_2) acceleration tensor of link 2 */
+        const real prr_B_2_in_axes2_xy = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
+            prr_rel_in_axes2_x*prr_s_2);
         /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prr_acc_1_x = -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x -
-            prr_qdd_2*prr_v_2_t;
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x +
+            prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x - prr_S_ddot_in_axes2_y*prr_s_2;
         /* (prr-f_1) inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_f_1_x = prr_acc_1_x*prr_link1_mass;
-        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t);
+        const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass;
+        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
+            prr_g_in_axes0_y*prr_s_2;
+        const real prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
+            prr_c_2*prr_g_in_axes0_y;
+        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+        const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y;
         /* (prr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x -
-            prr_h_2_y*prr_qdd_2;
-        const real prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 -
-            prr_G_t*prr_c_2;
+        const real prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z -
+            prr_f_1_in_axes0_x*prr_v_2_in_axes0_x);
+        const real prr_c_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 -
+            prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_in_axes0_x;
+        const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x +
+            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t + prr_f_1_in_axes0_x*prr_s_2;
         /* (prr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real prr_link2_mass = m->prr_link2_mass[i];
-        const real prr_c_true_x = prr_c_x - prr_acc_2_x*prr_link2_mass;
-        const real prr_c_true_y = prr_c_y - prr_acc_2_y*prr_link2_mass;
-        const real prr_c_true_in_base_x = axis_y_prr_axes2_in_base_x*prr_c_true_y +
-            axis_y_prr_axes2_in_base_y*prr_c_true_x;
-        const real prr_c_true_in_base_y = axis_y_prr_axes2_in_base_y*prr_c_true_y -
-            axis_y_prr_axes2_in_base_x*prr_c_true_x;
-        o[0*count + k] = prr_c_true_in_base_x;
-        o[1*count + k] = prr_c_true_in_base_y;
-        o[2*count + k] = prr_w_1_in_base_x;
-        o[3*count + k] = prr_w_1_in_base_y;
+        const real prr_c_true_in_axes2_x = prr_c_in_axes2_x - prr_acc_2_in_axes2_x*prr_link2_mass;
+        const real prr_c_true_in_axes2_y = prr_c_in_axes2_y - prr_acc_2_in_axes2_y*prr_link2_mass;
+        const real prr_c_true_x = axis_x_prr_axes2_x*prr_c_true_in_axes2_x +
+            axis_y_prr_axes2_x*prr_c_true_in_axes2_y;
+        const real prr_c_true_y = axis_x_prr_axes2_x*prr_c_true_in_axes2_y -
+            axis_y_prr_axes2_x*prr_c_true_in_axes2_x;
+        /* (prr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = prr_c_true_x;
+        o[1*count + k] = prr_c_true_y;
+        /* (prr-w_1) reciprocal vector 1 */
+        o[2*count + k] = prr_w_1_x;
+        o[3*count + k] = prr_w_1_y;
         const real prr_size = m->prr_size[i];
         o[4*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[5*count + k] = UNLESS(magnitude(-prr_v_2_t_2) > TOLERANCE*prr_size);
+        o[5*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -5462,11 +5545,12 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
-            gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x -
+            R_yx*h_star_in_platform_y) + gravity_y*(R_xx*h_star_in_platform_y +
+            R_yx*h_star_in_platform_x + m_star*t_y);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -5494,40 +5578,41 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t l
         const real t_y = s[1*w + j];
         const real rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
             rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
         /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rpr_root_1 = 1/rpr_root_1;
         const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
         /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
         /* (potential) potential energy */
-        const real rpr_b_r0_x = m->rpr_b_r0_x[i];
-        const real rpr_b_r0_y = m->rpr_b_r0_y[i];
-        const real rpr_g_r0_x = m->rpr_g_r0_x[i];
-        const real rpr_g_r0_y = m->rpr_g_r0_y[i];
-        const real rpr_h_1_x = m->rpr_h_1_x[i];
-        const real rpr_h_1_y = m->rpr_h_1_y[i];
-        const real rpr_h_2_x = m->rpr_h_2_x[i];
-        const real rpr_h_2_y = m->rpr_h_2_y[i];
+        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
+        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
+        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
         const real rpr_link1_mass = m->rpr_link1_mass[i];
-        const real rpr_potential_t = (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x +
-            rpr_h_2_x + rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) +
-            (rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y +
-            rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 - rpr_b_r0_x*rpr_s_1));
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_potential_t : rpr_potential_t;  /* total_rpr */
+        const real rpr_potential_t = m->rpr_potential_t[i];
+        const real rpr_potential_t_2 = m->rpr_potential_t_2[i];
+        const real rpr_potential_t_3 = (rpr_acc_2_t*rpr_c_1 +
+            rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
+            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
+            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_potential_t_3 : rpr_potential_t_3;  /* potential_t_2 */
         o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -5561,21 +5646,21 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
             rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -5585,38 +5670,41 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (potential) potential energy */
-        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
-        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
-            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
-            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
-            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
-            rrr_h_2_x*rrr_s_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_potential_t = m->rrr_potential_t[i];
+        const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
+        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t_3 : rrr_potential_t_3;  /* potential_t_3 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
@@ -5650,42 +5738,42 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t leg, size_t l
         const real t_y = s[1*w + j];
         const real prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x -
             prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-q_1) displacement of joint 1 */
         const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_q_1_t = prr_branch_1*root(prr_disc_1);
-        const real prr_q_1 = prr_px_1 + prr_q_1_t;
+        const real prr_q_1_t = -prr_branch_1*root(prr_disc_1);
+        const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 = inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t;
+        const real prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (potential) potential energy */
-        const real prr_b_r0_x = m->prr_b_r0_x[i];
-        const real prr_g_r0_x = m->prr_g_r0_x[i];
-        const real prr_g_r0_y = m->prr_g_r0_y[i];
-        const real prr_h_1_x = m->prr_h_1_x[i];
-        const real prr_h_1_y = m->prr_h_1_y[i];
-        const real prr_h_2_x = m->prr_h_2_x[i];
-        const real prr_h_2_y = m->prr_h_2_y[i];
+        const real prr_b_in_axes0_x = m->prr_b_in_axes0_x[i];
+        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+        const real prr_h_1_in_spec0_x = m->prr_h_1_in_spec0_x[i];
+        const real prr_h_1_in_spec0_y = m->prr_h_1_in_spec0_y[i];
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_potential_t = m->prr_potential_t[i];
-        const real prr_potential_t_2 = prr_g_r0_x*(prr_h_1_x + prr_link1_mass*(prr_b_r0_x +
-            prr_q_1) - prr_c_2*prr_h_2_x - prr_h_2_y*prr_s_2) + prr_g_r0_y*(prr_h_1_y +
-            prr_potential_t + prr_h_2_x*prr_s_2 - prr_c_2*prr_h_2_y);
-        terms[0*count + k] = add ? terms[0*count + k] + prr_potential_t_2 : prr_potential_t_2;  /* total_prr */
+        const real prr_potential_t_2 = prr_g_in_axes0_x*(prr_h_1_in_spec0_x +
+            prr_c_2*prr_h_2_in_spec2_x + prr_link1_mass*(prr_b_in_axes0_x + prr_q_1) -
+            prr_h_2_in_spec2_y*prr_s_2) + prr_g_in_axes0_y*(prr_h_1_in_spec0_y + prr_potential_t +
+            prr_c_2*prr_h_2_in_spec2_y + prr_h_2_in_spec2_x*prr_s_2);
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + -prr_potential_t_2 : -prr_potential_t_2;  /* potential_prr */
         o[0*count + k] = UNLESS(prr_disc_1 >= 0);
     }
 }
@@ -5701,11 +5789,12 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_prr = sums[2*w + k];
         const real potential_t = s[4*w + k];
-        const real total_prr = sums[2*w + k];
-        const real total_rpr = sums[0*w + k];
-        const real total_rrr = sums[1*w + k];
-        const real potential_ = -potential_t - total_prr - total_rpr - total_rrr;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_t_3 = sums[1*w + k];
+        const real potential_ = potential_prr - potential_t - potential_t_2 - potential_t_3;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5757,6 +5846,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -5774,53 +5864,57 @@ INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
         const real rpr_base_point_x = m->rpr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x;
+        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
         /* (rpr-px_1) component along the reference direction */
         const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
         const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
         const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+        /* (rpr-py_1) component across the reference direction */
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
         /* (rpr-rho2_1) squared amplitude */
         const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
         /* (rpr-root_1) amplitude, with the sign of the branch */
         const real rpr_branch_1 = m->rpr_branch_1[i];
         const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
         /* (rpr-w_1) reciprocal vector 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_axis_x_x = inv_rpr_root_1*rpr_S_x;
-        const real rpr_axis_x_y = inv_rpr_root_1*rpr_S_y;
-        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rpr_spread_t = b_c_x - rpr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rpr_spread_t_2 = b_c_y - rpr_platform_point_y;
-        const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_pivot_size = magnitude(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real rpr_pivot_size_2 = magnitude(rpr_root_1);
+        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
+        /* (rpr-w_2) reciprocal vector 2 */
+        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
+        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
         /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real rpr_pivot_size = magnitude(rpr_rho2_1);
+        const real rpr_pivot_size_2 = magnitude(rpr_root_1);
         const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
             R(1.6129032258064517)*rpr_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rpr_spread_t_3 : rpr_spread_t_3;  /* total_rpr */
-        o[0*count + k] = rpr_axis_x_x;
-        o[1*count + k] = rpr_axis_x_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
+        const real rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y;
+        const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rpr_spread_t_3 : rpr_spread_t_3;  /* spread_rpr */
+        /* (rpr-w_2) reciprocal vector 2 */
+        o[0*count + k] = rpr_w_2_x;
+        o[1*count + k] = rpr_w_2_y;
+        /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
+        /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = rpr_least_pivots;
-        o[5*count + k] = (rpr_axis_x_x + rpr_axis_x_y) + (rpr_H_a_2_z + rpr_least_pivots);
+        o[5*count + k] = (rpr_w_2_x + rpr_w_2_y) + (rpr_H_a_2_z + rpr_least_pivots);
         o[4*count + k] = UNLESS(magnitude(rpr_rho2_1) > TOLERANCE*TOLERANCE*R(0.3844)) +
             UNLESS(magnitude(rpr_root_1) > TOLERANCE*R(0.62));
     }
@@ -5850,31 +5944,31 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -5884,63 +5978,67 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
+            rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
-        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t);
+        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
-        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* spread_rrr */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = rrr_least_pivots;
         o[4*count + k] = rrr_disc_1;
-        o[7*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_H_a_1_z + (rrr_least_pivots +
+        o[7*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_H_a_1_z + (rrr_least_pivots +
             rrr_disc_1));
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -5971,73 +6069,72 @@ INLINE void condition_legs_prr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
         const real prr_base_point_x = m->prr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x;
+        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
         const real prr_base_point_y = m->prr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y;
-        /* (prr-px_1) component along axis 1 */
+        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
         const real prr_base_frame_xx = m->prr_base_frame_xx[i];
         const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
         /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_disc_1_t = m->prr_disc_1_t[i];
-        const real prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2;
+        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+        const real prr_size_t = m->prr_size_t[i];
+        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_disc_1_t_5 = m->inv_prr_disc_1_t_5[i];
+        const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_c_2 =
-            inv_prr_disc_1_t_5*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 =
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy);
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 -
-            prr_base_frame_xy*prr_c_2;
-        const real axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 -
-            prr_base_frame_yy*prr_c_2;
+        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+            + prr_S_y*prr_base_frame_yy);
         /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_t = prr_c_2*prr_platform_joint_offset_x;
+        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
         /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t;
-        const real prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t;
-        const real prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2;
-        const real prr_w_1_in_base_x = axis_y_prr_axes2_in_base_x*prr__r0_y +
-            axis_y_prr_axes2_in_base_y*prr__r0_x;
-        const real prr_w_1_in_base_y = axis_y_prr_axes2_in_base_y*prr__r0_y -
-            axis_y_prr_axes2_in_base_x*prr__r0_x;
-        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y -
-            prr_q_in_base_y*prr_w_1_in_base_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real prr_spread_t = b_c_x - prr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real prr_spread_t_2 = b_c_y - prr_platform_point_y;
-        const real prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real prr_pivot_size = magnitude(prr_v_2_t);
+        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y;
+        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t;
+        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2;
+        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
+        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real prr_pivot_size = magnitude(prr_v_2_in_axes0_y);
         const real inv_prr_size = m->inv_prr_size[i];
         const real prr_pivot = inv_prr_size*prr_pivot_size;
-        terms[0*count + k] = add ? terms[0*count + k] + prr_spread_t_3 : prr_spread_t_3;  /* total_prr */
-        o[0*count + k] = prr_w_1_in_base_x;
-        o[1*count + k] = prr_w_1_in_base_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real prr_spread_t = b_c_in_platform_x - prr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real prr_spread_t_2 = b_c_in_platform_y - prr_platform_point_y;
+        const real prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + prr_spread_t_3 : prr_spread_t_3;  /* spread_prr */
+        /* (prr-w_1) reciprocal vector 1 */
+        o[0*count + k] = prr_w_1_x;
+        o[1*count + k] = prr_w_1_y;
+        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
+        /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = prr_pivot;
         o[4*count + k] = prr_disc_1;
-        o[7*count + k] = (prr_w_1_in_base_x + prr_w_1_in_base_y) + (prr_H_a_1_z + (prr_pivot +
-            prr_disc_1));
+        o[7*count + k] = (prr_w_1_x + prr_w_1_y) + (prr_H_a_1_z + (prr_pivot + prr_disc_1));
         const real prr_size = m->prr_size[i];
         o[5*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[6*count + k] = UNLESS(magnitude(-prr_v_2_t) > TOLERANCE*prr_size);
+        o[6*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -6060,11 +6157,12 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
-        const real total_prr = sums[2*w + k];
-        const real total_rpr = sums[0*w + k];
-        const real total_rrr = sums[1*w + k];
-        const real spread_ = root(R(0.3333333333333333)*total_prr +
-            R(0.3333333333333333)*total_rpr + R(0.3333333333333333)*total_rrr);
+        const real spread_prr = sums[2*w + k];
+        const real spread_rpr = sums[0*w + k];
+        const real spread_rrr = sums[1*w + k];
+        const real spread_ = root(R(0.3333333333333333)*spread_prr +
+            R(0.3333333333333333)*spread_rpr + R(0.3333333333333333)*spread_rrr);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

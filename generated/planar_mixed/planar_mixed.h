@@ -134,30 +134,33 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 1 legs of type rpr */
-    planar_mixed_real rpr_J_group_1_zz[1], rpr_b_r0_x[1], rpr_b_r0_y[1], rpr_base_frame_xx[1],
-            rpr_base_frame_xy[1], rpr_base_frame_yx[1], rpr_base_frame_yy[1], rpr_base_point_x[1],
-            rpr_base_point_y[1], rpr_branch_1[1], rpr_g_r0_x[1], rpr_g_r0_y[1], rpr_h_1_x[1],
-            rpr_h_1_y[1], rpr_h_2_x[1], rpr_h_2_y[1], rpr_link1_mass[1], rpr_link2_mass[1],
-            rpr_platform_point_x[1], rpr_platform_point_y[1];
+    planar_mixed_real rpr_J_group_1_in_axes1_zz[1], rpr_acc_2_t[1], rpr_acc_2_t_2[1],
+            rpr_base_frame_xx[1], rpr_base_frame_xy[1], rpr_base_frame_yx[1], rpr_base_frame_yy[1],
+            rpr_base_point_x[1], rpr_base_point_y[1], rpr_branch_1[1], rpr_h_1_in_spec1_x[1],
+            rpr_h_1_in_spec1_y[1], rpr_h_2_in_spec1_x[1], rpr_h_2_in_spec1_y[1], rpr_link1_mass[1],
+            rpr_link2_mass[1], rpr_platform_point_x[1], rpr_platform_point_y[1], rpr_potential_t[1],
+            rpr_potential_t_2[1];
     /* 1 legs of type rrr */
-    planar_mixed_real inv_rrr_Kd_1_t_5[1], inv_rrr_Kd_1_t_7[1], inv_rrr_platform_joint_offset_x[1],
-            inv_rrr_rho2_1_t_4[1], inv_rrr_size[1], rrr_J_1_zz[1], rrr_J_2_zz[1], rrr_Jc_1_zz[1],
-            rrr_Kd_1_t_2[1], rrr_Kd_1_t_4[1], rrr_b_r0_x[1], rrr_b_r0_y[1], rrr_base_frame_xx[1],
-            rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1],
-            rrr_base_point_y[1], rrr_branch_1[1], rrr_d_Gamma_2_t[1], rrr_d_Gamma_2_y[1],
-            rrr_d_c_yy[1], rrr_d_phi_2_t[1], rrr_g_r0_x[1], rrr_g_r0_y[1], rrr_h_1_x[1], rrr_h_1_y[1],
-            rrr_h_2_x[1], rrr_h_2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
-            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
-            rrr_rho2_1_t[1], rrr_size[1];
+    planar_mixed_real inv_rrr_rho2_1_t[1], inv_rrr_size[1], inv_rrr_size_t[1], inv_rrr_size_t_2[1],
+            rrr_J_1_in_spec1_zz[1], rrr_J_2_in_spec2_zz[1], rrr_Jc_1_in_axes1_zz[1], rrr_Kd_1_t[1],
+            rrr_Kd_1_t_2[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1],
+            rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1], rrr_branch_1[1],
+            rrr_d_Gamma_2_in_axes2_y[1], rrr_d_Gamma_2_t[1], rrr_d_c_in_axes2_yy[1], rrr_d_phi_2_t[1],
+            rrr_h_1_in_spec1_x[1], rrr_h_1_in_spec1_y[1], rrr_h_2_in_spec2_x[1],
+            rrr_h_2_in_spec2_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
+            rrr_mu_1_t[1], rrr_mu_1_t_2[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
+            rrr_platform_point_y[1], rrr_potential_t[1], rrr_potential_t_2[1], rrr_rho2_1_t[1],
+            rrr_size[1], rrr_w_2_in_axes2_y[1];
     /* 1 legs of type prr */
-    planar_mixed_real inv_prr_disc_1_t_5[1], inv_prr_size[1], prr_J_2_zz[1], prr_b_r0_x[1],
+    planar_mixed_real inv_prr_size[1], inv_prr_size_t[1], prr_J_2_in_spec2_zz[1], prr_b_in_axes0_x[1],
             prr_base_frame_xx[1], prr_base_frame_xy[1], prr_base_frame_yx[1], prr_base_frame_yy[1],
-            prr_base_point_x[1], prr_base_point_y[1], prr_branch_1[1], prr_disc_1_t[1], prr_g_r0_x[1],
-            prr_g_r0_y[1], prr_h_1_x[1], prr_h_1_y[1], prr_h_2_x[1], prr_h_2_y[1], prr_link1_mass[1],
-            prr_link2_mass[1], prr_platform_joint_offset_x[1], prr_platform_point_x[1],
-            prr_platform_point_y[1], prr_potential_t[1], prr_size[1];
-    planar_mixed_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
-            h_star_y, legs_size, m_star;
+            prr_base_point_x[1], prr_base_point_y[1], prr_branch_1[1], prr_g_in_axes0_x[1],
+            prr_g_in_axes0_y[1], prr_h_1_in_spec0_x[1], prr_h_1_in_spec0_y[1], prr_h_2_in_spec2_x[1],
+            prr_h_2_in_spec2_y[1], prr_link1_mass[1], prr_link2_mass[1],
+            prr_platform_joint_offset_x[1], prr_platform_point_x[1], prr_platform_point_y[1],
+            prr_potential_t[1], prr_size[1], prr_size_t[1];
+    planar_mixed_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
+            gravity_y, h_star_in_platform_x, h_star_in_platform_y, legs_size, m_star;
 } planar_mixed_model;
 
 extern const planar_mixed_params planar_mixed_default_params;

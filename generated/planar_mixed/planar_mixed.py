@@ -465,7 +465,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -660,23 +660,27 @@ def _prepare(p):
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
+    # (rpr-h_1) first moment of link 1 about the origin of link 1
+    rpr_h_1_in_spec1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
+    rpr_h_1_in_spec1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
     # (rpr-h_2) first moment of link 2 about the connection point
-    rpr_h_2_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
-    rpr_h_2_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
-    # (rpr-J_1) inertia tensor of link 1 about the origin of link 1
-    rpr_J_1_t = (
+    rpr_h_2_in_spec1_x = rpr_link2_centre_of_mass_x*rpr_link2_mass
+    rpr_h_2_in_spec1_y = rpr_link2_centre_of_mass_y*rpr_link2_mass
+    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
+    rpr_acc_2_t = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
+    rpr_acc_2_t_2 = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
+    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rpr_J_group_1_t = (
     rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
         rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y
     )
-    # (rpr-J_2) inertia tensor of link 2 about the connection point
-    rpr_J_2_t = (
+    rpr_J_group_1_t_2 = (
     rpr_link2_centre_of_mass_x*rpr_link2_centre_of_mass_x +
         rpr_link2_centre_of_mass_y*rpr_link2_centre_of_mass_y
     )
-    # (rpr-J_group_1) inertia of the links that turn with link 1, each about its reference point
-    rpr_J_group_1_zz = (
-    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_1_t*rpr_link1_mass +
-        rpr_J_2_t*rpr_link2_mass
+    rpr_J_group_1_in_axes1_zz = (
+    rpr_link1_inertia_zz + rpr_link2_inertia_zz + rpr_J_group_1_t*rpr_link1_mass +
+        rpr_J_group_1_t_2*rpr_link2_mass
     )
     # (h_star) first moment about the platform origin
     rpr_h_star_t = rpr_link2_mass*rpr_platform_point_x
@@ -686,64 +690,68 @@ def _prepare(p):
     rpr_J_star_t_2 = rpr_J_star_t + rpr_platform_point_x*rpr_platform_point_x
     rpr_J_star_t_3 = rpr_J_star_t*rpr_link2_mass
     rpr_J_star_t_4 = rpr_J_star_t_2*rpr_link2_mass
-    # (rpr-h_1) first moment of link 1 about the origin of link 1
-    rpr_h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
-    rpr_h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
-    # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-    rpr_g_r0_x = gravity_x*rpr_base_frame_xx + gravity_y*rpr_base_frame_yx
-    rpr_g_r0_y = gravity_x*rpr_base_frame_xy + gravity_y*rpr_base_frame_yy
     # (potential) potential energy
-    rpr_b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
-    rpr_b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
-    total_rpr_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
-    total_rpr_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
-    total_rpr_xx = np.sum(np.broadcast_to(rpr_J_star_t_3, _rpr))
-    total_rpr_zz = np.sum(np.broadcast_to(rpr_J_star_t_4, _rpr))
-    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
-    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
-    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
-    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
+    rpr_potential_t = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
+    rpr_potential_t_2 = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
+    m_star_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    h_star_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_h_star_t, _rpr))
+    h_star_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_h_star_t_2, _rpr))
+    J_star_rpr_in_platform_xx = np.sum(np.broadcast_to(rpr_J_star_t_3, _rpr))
+    J_star_rpr_in_platform_zz = np.sum(np.broadcast_to(rpr_J_star_t_4, _rpr))
+    b_c_rpr_in_platform_x = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
+    b_c_rpr_in_platform_y = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
     # (rrr-size) length of the leg's lever arms, the measure of what is near singular
-    rrr_size_t = 4.58151643161e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
-    rrr_size = sqrt(rrr_size_t)
-    # (rrr-rho2_1) squared amplitude
-    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
-    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
-    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
-    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
-    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-h_2) first moment of link 2 about the connection point
-    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
-    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-w_2) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
-    # (rrr-J_2) inertia tensor of link 2 about the connection point
-    rrr_J_2_t = (
-    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
-    )
-    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
-    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
-    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_size_t_3 = 4.58151643161e-07 + rrr_size_t + rrr_size_t_2
+    rrr_size = sqrt(rrr_size_t_3)
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
     # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
     rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x
+    rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+        rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x
+    )
+    rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = 0.5*rrr_size_t
+    rrr_Kd_1_t_2 = 0.5*rrr_size_t_2
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3
+    # (rrr-x_2) from the origin of joint 2 to the connection point
+    inv_rrr_size_t = 1.0/rrr_size_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_size_t_2 = 1.0/rrr_size_t_2
+    # (rrr-w_2) reciprocal vector 2
+    rrr_w_2_in_axes2_y = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y
     # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
-    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
+    rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y
+    rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x
+    # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+    rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_rrr_rho2_1_t = 1.0/rrr_rho2_1_t
+    inv_rrr_size = 1.0/rrr_size
     # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    rrr_d_c_yy = (
-    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
+    rrr_d_c_in_axes2_yy = (
+    -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y - rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y
     )
     # (h_star) first moment about the platform origin
     rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
@@ -753,44 +761,43 @@ def _prepare(p):
     rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x
     rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass
     rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass
-    # (rrr-h_1) first moment of link 1 about the origin of link 1
-    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
     # (potential) potential energy
-    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-rho2_1) squared amplitude
-    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
-    # (rrr-w_1) reciprocal vector 1
-    inv_rrr_size = 1.0/rrr_size
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
-    total_rrr_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
-    total_rrr_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
-    # (prr-disc_1) discriminant of the distance equation
-    prr_disc_1_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
-    # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-    inv_prr_disc_1_t_5 = 1.0/prr_disc_1_t
-    # (prr-rho_tip_2) connection point to the centre of mass of link 2
-    prr_rho_tip_2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x
-    # (prr-h_2) first moment of link 2 about the connection point
-    prr_h_2_x = prr_link2_mass*prr_rho_tip_2_x
-    prr_h_2_y = prr_link2_centre_of_mass_y*prr_link2_mass
+    rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    m_star_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    h_star_rrr_in_platform_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    h_star_rrr_in_platform_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
+    J_star_rrr_in_platform_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
+    J_star_rrr_in_platform_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
+    b_c_rrr_in_platform_x = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    b_c_rrr_in_platform_y = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    legs_size_rrr = np.sum(np.broadcast_to(rrr_size_t_3, _rrr))
     # (prr-size) length of the leg's lever arms, the measure of what is near singular
-    prr_size_t = 4.58151643161e-07 + prr_disc_1_t
-    prr_size = sqrt(prr_size_t)
+    prr_size_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
+    prr_size_t_2 = 4.58151643161e-07 + prr_size_t
+    prr_size = sqrt(prr_size_t_2)
+    # (prr-h_1) first moment of link 1 about the origin of link 1
+    prr_h_1_in_spec0_x = prr_link1_centre_of_mass_x*prr_link1_mass
+    prr_h_1_in_spec0_y = prr_link1_centre_of_mass_y*prr_link1_mass
+    # (prr-rho_tip_2) connection point to the centre of mass of link 2
+    prr_rho_tip_2_in_spec2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x
+    # (prr-h_2) first moment of link 2 about the connection point
+    prr_h_2_in_spec2_x = prr_link2_mass*prr_rho_tip_2_in_spec2_x
+    prr_h_2_in_spec2_y = prr_link2_centre_of_mass_y*prr_link2_mass
     # (prr-J_2) inertia tensor of link 2 about the connection point
     prr_J_2_t = (
-    prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y + prr_rho_tip_2_x*prr_rho_tip_2_x
+    prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y +
+        prr_rho_tip_2_in_spec2_x*prr_rho_tip_2_in_spec2_x
     )
-    prr_J_2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass
+    prr_J_2_in_spec2_zz = prr_link2_inertia_zz + prr_J_2_t*prr_link2_mass
+    # (prr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_prr_size_t = 1.0/prr_size_t
+    # (prr-acc_1) acceleration of the reference point of link 1, less gravity
+    prr_g_in_axes0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
+    # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+    prr_g_in_axes0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
+    # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_prr_size = 1.0/prr_size
     # (h_star) first moment about the platform origin
     prr_h_star_t = prr_link2_mass*prr_platform_point_x
     prr_h_star_t_2 = prr_link2_mass*prr_platform_point_y
@@ -799,130 +806,135 @@ def _prepare(p):
     prr_J_star_t_2 = prr_J_star_t + prr_platform_point_x*prr_platform_point_x
     prr_J_star_t_3 = prr_J_star_t*prr_link2_mass
     prr_J_star_t_4 = prr_J_star_t_2*prr_link2_mass
-    # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    prr_g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
-    prr_g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
-    # (prr-h_1) first moment of link 1 about the origin of link 1
-    prr_h_1_x = prr_link1_centre_of_mass_x*prr_link1_mass
-    prr_h_1_y = prr_link1_centre_of_mass_y*prr_link1_mass
     # (potential) potential energy
-    prr_b_r0_x = prr_base_frame_xx*prr_base_point_x + prr_base_frame_yx*prr_base_point_y
+    prr_b_in_axes0_x = prr_base_frame_xx*prr_base_point_x + prr_base_frame_yx*prr_base_point_y
     prr_potential_t = (
     prr_link1_mass*(prr_base_frame_xy*prr_base_point_x + prr_base_frame_yy*prr_base_point_y)
     )
-    # (prr-w_2) reciprocal vector 2
-    inv_prr_size = 1.0/prr_size
-    total_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
-    total_prr_x = np.sum(np.broadcast_to(prr_h_star_t, _prr))
-    total_prr_y = np.sum(np.broadcast_to(prr_h_star_t_2, _prr))
-    total_prr_xx = np.sum(np.broadcast_to(prr_J_star_t_3, _prr))
-    total_prr_zz = np.sum(np.broadcast_to(prr_J_star_t_4, _prr))
-    total_prr_x_2 = np.sum(np.broadcast_to(prr_platform_point_x, _prr))
-    total_prr_y_2 = np.sum(np.broadcast_to(prr_platform_point_y, _prr))
-    total_prr_2 = np.sum(np.broadcast_to(prr_size_t, _prr))
+    m_star_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
+    h_star_prr_in_platform_x = np.sum(np.broadcast_to(prr_h_star_t, _prr))
+    h_star_prr_in_platform_y = np.sum(np.broadcast_to(prr_h_star_t_2, _prr))
+    J_star_prr_in_platform_xx = np.sum(np.broadcast_to(prr_J_star_t_3, _prr))
+    J_star_prr_in_platform_zz = np.sum(np.broadcast_to(prr_J_star_t_4, _prr))
+    b_c_prr_in_platform_x = np.sum(np.broadcast_to(prr_platform_point_x, _prr))
+    b_c_prr_in_platform_y = np.sum(np.broadcast_to(prr_platform_point_y, _prr))
+    legs_size_prr = np.sum(np.broadcast_to(prr_size_t_2, _prr))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_prr + total_rpr + total_rrr
+    m_star = m_star_prr + m_star_rpr + m_star_rrr + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_prr_x + total_rpr_x + total_rrr_x
-    h_star_y = h_star_t_2 + total_prr_y + total_rpr_y + total_rrr_y
-    # (J_star) inertia tensor about the platform origin
-    J_star_xx = J_star_t_3 + total_prr_xx + total_rpr_xx + total_rrr_xx
-    J_star_t_5 = (
-    J_star_xx - J_star_t_4 - platform_inertia_zz - total_prr_zz - total_rpr_zz - total_rrr_zz
+    h_star_in_platform_x = (
+    h_star_prr_in_platform_x + h_star_rpr_in_platform_x + h_star_rrr_in_platform_x + h_star_t
     )
-    J_star_t_6 = J_star_t_5 - J_star_xx
+    h_star_in_platform_y = (
+    h_star_prr_in_platform_y + h_star_rpr_in_platform_y + h_star_rrr_in_platform_y + h_star_t_2
+    )
+    # (J_star) inertia tensor about the platform origin
+    J_star_in_platform_xx = (
+    J_star_prr_in_platform_xx + J_star_rpr_in_platform_xx + J_star_rrr_in_platform_xx + J_star_t_3
+    )
+    J_star_t_5 = (
+    J_star_in_platform_xx - J_star_prr_in_platform_zz - J_star_rpr_in_platform_zz -
+        J_star_rrr_in_platform_zz - J_star_t_4 - platform_inertia_zz
+    )
+    J_star_zz = J_star_in_platform_xx - J_star_t_5
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     # (b_c) centroid of the platform points
-    b_c_x = (
-    0.3333333333333333*total_prr_x_2 + 0.3333333333333333*total_rpr_x_2 +
-        0.3333333333333333*total_rrr_x_2
+    b_c_in_platform_x = (
+    0.3333333333333333*b_c_prr_in_platform_x + 0.3333333333333333*b_c_rpr_in_platform_x +
+        0.3333333333333333*b_c_rrr_in_platform_x
     )
-    b_c_y = (
-    0.3333333333333333*total_prr_y_2 + 0.3333333333333333*total_rpr_y_2 +
-        0.3333333333333333*total_rrr_y_2
+    b_c_in_platform_y = (
+    0.3333333333333333*b_c_prr_in_platform_y + 0.3333333333333333*b_c_rpr_in_platform_y +
+        0.3333333333333333*b_c_rrr_in_platform_y
     )
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = (
-    sqrt(0.12813333333333332 + 0.3333333333333333*total_prr_2 + 0.3333333333333333*total_rrr_2)
+    sqrt(0.12813333333333332 + 0.3333333333333333*legs_size_prr +
+        0.3333333333333333*legs_size_rrr)
     )
     return {
         "dynamics": (
-        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x,
+                h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
+                    rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
-                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t,
+                    rrr_d_c_in_axes2_yy, rrr_d_phi_2_t, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+                    rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t,
+                    rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    prr_size,),
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+                    prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x,
+                    prr_platform_point_x, prr_platform_point_y, prr_size, prr_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_6, h_star_x, h_star_y, m_star,),
+        (J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,),
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
-                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy, rrr_d_phi_2_t,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+                    rrr_w_2_in_axes2_y,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_h_2_x, prr_h_2_y, prr_link1_mass,
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_h_2_in_spec2_x, prr_h_2_in_spec2_y, prr_link1_mass,
                     prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    prr_size,),
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
         "Z": (
-        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
+        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
-                    rpr_platform_point_y,),
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    prr_size,),
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+                    prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x,
+                    prr_platform_point_x, prr_platform_point_y, prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -935,43 +947,45 @@ def _prepare(p):
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+        (inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
         "required": (
-        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-                    prr_size,),
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+                    prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x,
+                    prr_platform_point_x, prr_platform_point_y, prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -984,17 +998,17 @@ def _prepare(p):
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
                     rrr_rho2_1_t,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+        (inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y,),
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size_t,),
                 ),
             ),
         ),
@@ -1007,17 +1021,17 @@ def _prepare(p):
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+        (inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -1030,17 +1044,17 @@ def _prepare(p):
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+        (inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
                     prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -1048,56 +1062,61 @@ def _prepare(p):
         (gravity_x, gravity_y,),
             (
                 (_rpr,
-        (rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-                    rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,),
+        (rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+                    rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+                    rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+                    rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+                    rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_mu_1_t,
+                    rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-                    prr_link2_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+        (inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+                    prr_h_2_in_spec2_y, prr_link1_mass, prr_link2_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_rpr,
-        (rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+        (rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
                     rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
-                    rpr_g_r0_x, rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y,
-                    rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,),
+                    rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x,
+                    rpr_h_2_in_spec1_y, rpr_link1_mass, rpr_platform_point_x,
+                    rpr_platform_point_y, rpr_potential_t, rpr_potential_t_2,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
-                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
-                    rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+                    rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link1_mass,
+                    rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, prr_b_r0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
-                    prr_disc_1_t, prr_g_r0_x, prr_g_r0_y, prr_h_1_x, prr_h_1_y, prr_h_2_x,
-                    prr_h_2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_potential_t,),
+        (inv_prr_size_t, prr_b_in_axes0_x, prr_base_frame_xx, prr_base_frame_xy,
+                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+                    prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_1_in_spec0_x,
+                    prr_h_1_in_spec0_y, prr_h_2_in_spec2_x, prr_h_2_in_spec2_y, prr_link1_mass,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_potential_t, prr_size_t,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, legs_size,),
+        (b_c_in_platform_x, b_c_in_platform_y, legs_size,),
             (
                 (_rpr,
         (rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
@@ -1105,17 +1124,17 @@ def _prepare(p):
                     rpr_platform_point_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        (inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
                     rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
                     rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
                     rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
                 ),
                 (_prr,
-        (inv_prr_disc_1_t_5, inv_prr_size, prr_base_frame_xx, prr_base_frame_xy,
-                    prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
-                    prr_branch_1, prr_disc_1_t, prr_platform_joint_offset_x, prr_platform_point_x,
-                    prr_platform_point_y, prr_size,),
+        (inv_prr_size, inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+                    prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+                    prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+                    prr_size, prr_size_t,),
                 ),
             ),
         ),
@@ -1577,7 +1596,10 @@ def _run_dynamics(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    (
+    J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,
+        m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1597,139 +1619,154 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_x,
-            rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
-        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_yy = (
-        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
-        )
-        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rpr_Q_t = 0.5*rpr_d_c_yy
-        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
-        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
-        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
-        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
-        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
-        # (M_ta) coupling block of M
-        rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x
-        rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x
-        # (M_aa) rotational block of M
-        rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-u_1) centripetal acceleration of the connection point
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
-        rpr_u_1_t_2 = omega_z*rpr_S_dot_t
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
-        # (rpr-u_1) centripetal acceleration of the connection point
-        rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2
+        rpr_u_1_y = -omega_z*rpr_S_dot_t
+        rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
         # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rpr_rel_o_y = rpr_u_1_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y
-        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o
-        # (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y
-        rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y
+        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y
         # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t - rpr_axis_x_y*rpr_u_1_t_2
-        rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
+        rpr_acc_2_o_in_axes1_x = (
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
+        )
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_in_axes1_x = (
+        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        )
         # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_o_z = (
-        rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x + rpr_g_tip_x*rpr_h_1_y -
-            rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x
+        rpr_mu_1_o_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
+        )
+        # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rpr_d_c_in_axes1_xy = inv_rpr_root_1*rpr_h_2_in_spec1_y
+        rpr_d_c_in_axes1_yy = (
+        -inv_rpr_root_1*rpr_h_2_in_spec1_x - inv_rpr_root_1*(rpr_h_2_in_spec1_x +
+            inv_rpr_root_1*rpr_J_group_1_in_axes1_zz)
         )
         # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z - rpr_h_2_x*rpr_qdd_1_o
+        rpr_c_o_in_axes1_y = (
+        -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+            rpr_h_2_in_spec1_x*rpr_qdd_1_o
+        )
+        # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
+        rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t - axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy
+        rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t + axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy
+        rpr_Q_xx = -2.0*axis_x_rpr_axes1_y*rpr_Q_t_2
+        rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3
+        rpr_Q_yy = -2.0*axis_x_rpr_axes1_x*rpr_Q_t_3
         # (rpr-U) velocity and gravity terms of the leg force
-        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
-        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        rpr_U_x = (
+        axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x + axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y
+        )
+        rpr_U_y = (
+        axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x - axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y
+        )
+        # (M_ta) coupling block of M
+        rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y
+        rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y
+        # (M_aa) rotational block of M
+        rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y
         # (Z_a) rotational part of Z
-        rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y
+        rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
+        rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
-            rpr_U_in_base_x, rpr_U_in_base_y, rpr_Z_a_t,
+        rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t, rpr_U_x, rpr_U_y,
+            rpr_Z_a_t,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     (
-    total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz,
-        total_rpr_x, total_rpr_y, total_rpr_z,
+    M_tt_rpr_xx, M_tt_rpr_xy, M_tt_rpr_yy, M_ta_rpr_xz, M_ta_rpr_yz, M_aa_rpr_zz, Z_t_rpr_x,
+        Z_t_rpr_y, Z_a_rpr_z,
     ) = sums
     sums = [0.0] * 9
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
-            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
+            rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+            rrr_d_phi_2_t, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+            rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1738,323 +1775,331 @@ def _run_dynamics(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
-        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
-        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
-        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = (
-        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
-            rrr_d_Gamma_2_x*rrr_w_2_t
-        )
-        rrr_Q_t_2 = 0.5*rrr_Q_t
-        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
-        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
-        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
-        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
-        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
-        # (M_ta) coupling block of M
-        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
-        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
-        # (M_aa) rotational block of M
-        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
-        )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_t = omega_z*rrr_S_dot_t_2
-        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
+        rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
+        rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_tip_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
-        )
-        rrr_u_1_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
-        )
         # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
-        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1_o) remainder of the acceleration tensor of link 1
+        rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrr_alpha_2_o_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
+        rrr_alpha_2_o_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_o_in_axes1_xy
         )
         # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_x = (
-        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
+        rrr_acc_2_o_in_axes2_x = (
+        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
-        rrr_acc_2_o_y = (
-        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
+        rrr_acc_2_o_in_axes2_y = (
+        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_o_z = (
-        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
+        rrr_mu_2_o_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
+        )
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
+        rrr_d_Gamma_2_in_axes2_x = (
+        rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_o_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_in_axes2_x = (
+        rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        )
         # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_in_axes2_xy = (
+        rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
+        )
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_o_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
-            - rrr_N_1_o_z)
+        rrr_c_o_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
-        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        rrr_c_o_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        )
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
+            rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
+        )
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (rrr-U) velocity and gravity terms of the leg force
-        rrr_U_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
-        )
-        rrr_U_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
-        )
+        rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
+        rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
+        rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y
         # (Z_a) rotational part of Z
-        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
-            rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
+        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
+            rrr_Z_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     (
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
-        total_rrr_x, total_rrr_y, total_rrr_z,
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz, Z_t_rrr_x,
+        Z_t_rrr_y, Z_a_rrr_z,
     ) = sums
     sums = [0.0] * 9
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+            prr_platform_point_y, prr_size, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
-        prr_w_2_t = inv_prr_v_2_t_2*prr_s_2
-        prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
-        # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz
-        prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2
-        prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t
-        # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t
-        prr__r0_y_2 = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
-        # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prr_d_c_xx = (
-        prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass - prr_d_Gamma_1_t*prr_s_2)
-            - prr_h_2_y*prr_w_2_t
-        )
-        prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 - prr__r0_x*prr__r0_y_2
-        # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
-        prr_Q_t = (
-        prr_d_c_xx + prr__r0_y*prr__r0_y_2 + prr_d_Gamma_2_y*prr_w_2_t_2 + prr_h_2_x*prr_w_2_t_2
-        )
-        prr_Q_t_2 = 0.5*prr_Q_t
-        prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 - axis_y_prr_axes2_in_base_y*prr_d_c_xy
-        prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy + axis_y_prr_axes2_in_base_y*prr_Q_t_2
-        prr_Q_t_5 = 2.0*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx
-        prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 + axis_y_prr_axes2_in_base_y*prr_Q_t_3
-        prr_Q_t_7 = 2.0*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx
-        # (M_ta) coupling block of M
-        prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x
-        prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x
-        # (M_aa) rotational block of M
-        prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
+        # (prr-w_2) reciprocal vector 2
+        prr_w_2_t = prr_s_2*prr_w_1_t
+        prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t
         # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
-        # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_t = omega_z*prr_S_dot_t_2
-        prr_u_1_t_2 = omega_z*prr_S_dot_t
+        prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
         prr_W_2_t = prr_qd_2*prr_qd_2
         # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_tip_x = (
-        axis_y_prr_axes2_in_base_x*prr_u_1_t_2 - axis_y_prr_axes2_in_base_y*prr_u_1_t
-        )
-        prr_u_1_tip_y = (
-        -axis_y_prr_axes2_in_base_x*prr_u_1_t - axis_y_prr_axes2_in_base_y*prr_u_1_t_2
-        )
+        prr_u_1_x = -omega_z*prr_S_dot_t_2
+        prr_u_1_t = omega_z*prr_S_dot_t
+        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
+        prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
         # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y)
-        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
-        prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
-        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o - prr_acc_2_o_x*prr_h_2_y
+        prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-B_2_o) remainder of the acceleration tensor of link 2
+        prr_B_2_o_in_axes2_xy = (
+        prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
+        )
         # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        prr_acc_1_o_x = (
-        -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t - prr_s_2*prr_u_1_tip_y
+        prr_acc_1_o_in_axes0_x = (
+        prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x
+            - prr_s_2*prr_u_1_in_axes2_y
         )
         # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
-        prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass
-        # (prr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t)
+        prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
+        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prr_acc_2_o_in_axes2_x = (
+        prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
+        )
+        prr_acc_2_o_in_axes2_y = (
+        prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
+        )
+        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_o_in_axes2_z = (
+        prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
+            prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
+        )
+        # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t
+        prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2
+        prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t
+        # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t
+        prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_d_c_in_axes2_xx = (
+        prr_d_Gamma_2_in_axes2_x*prr_w_2_t - prr_h_2_in_spec2_y*prr_w_2_t -
+            prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass + prr_d_Gamma_1_t*prr_s_2)
+        )
+        prr_d_c_in_axes2_xy = (
+        prr_d_Gamma_2_in_axes2_y*prr_w_2_t + prr_h_2_in_spec2_y*prr_w_2_in_axes2_y -
+            prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x
+        )
         # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prr_c_o_x = (
-        prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x - prr_h_2_y*prr_qdd_2_o
+        prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_o_in_axes2_x = (
+        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x
         )
-        prr_c_o_y = (
-        prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o - prr_G_o_t*prr_c_2
+        prr_c_o_in_axes2_y = (
+        prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y +
+            prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2
         )
+        # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prr_Q_t = (
+        prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_y +
+            prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y
+        )
+        prr_Q_t_2 = 0.5*prr_Q_t
+        prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 - axis_x_prr_axes2_x*prr_d_c_in_axes2_xy
+        prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 + axis_y_prr_axes2_x*prr_d_c_in_axes2_xy
+        prr_Q_xx = 2.0*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx
+        prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4
+        prr_Q_yy = 2.0*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx
         # (prr-U) velocity and gravity terms of the leg force
-        prr_U_in_base_x = (
-        -axis_y_prr_axes2_in_base_x*prr_c_o_y - axis_y_prr_axes2_in_base_y*prr_c_o_x
-        )
-        prr_U_in_base_y = (
-        axis_y_prr_axes2_in_base_x*prr_c_o_x - axis_y_prr_axes2_in_base_y*prr_c_o_y
-        )
+        prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x - axis_y_prr_axes2_x*prr_c_o_in_axes2_y
+        prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x - axis_x_prr_axes2_x*prr_c_o_in_axes2_y
+        # (M_ta) coupling block of M
+        prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y
+        prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y
+        # (M_aa) rotational block of M
+        prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y
         # (Z_a) rotational part of Z
-        prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
+        prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y
         # (prr-H_a_1) moment of the column's unit force about the platform origin
-        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
         sums = m.added(sums, leg, (
-        prr_Q_t_5, prr_Q_t_6, prr_Q_t_7, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
-            prr_U_in_base_x, prr_U_in_base_y, prr_Z_a_t,
+        prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t, prr_U_x, prr_U_y,
+            prr_Z_a_t,
         ))
-        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
-        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        out_H[_H_prr[0][leg]] = prr_w_1_x
+        out_H[_H_prr[1][leg]] = prr_w_1_y
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
     (
-    total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz,
-        total_prr_x, total_prr_y, total_prr_z,
+    M_tt_prr_xx, M_tt_prr_xy, M_tt_prr_yy, M_ta_prr_xz, M_ta_prr_yz, M_aa_prr_zz, Z_t_prr_x,
+        Z_t_prr_y, Z_a_prr_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx
-    M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy
+    M_tt_xx = M_tt_prr_xx + M_tt_rpr_xx + M_tt_rrr_xx + m_star
+    M_tt_xy = M_tt_prr_xy + M_tt_rpr_xy + M_tt_rrr_xy
+    M_tt_yy = M_tt_prr_yy + M_tt_rpr_yy + M_tt_rrr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz
-    M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz
+    M_ta_xz = M_ta_prr_xz + M_ta_rpr_xz + M_ta_rrr_xz - h_star_y
+    M_ta_yz = M_ta_prr_yz + M_ta_rpr_yz + M_ta_rrr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = total_prr_zz - J_star_t_6 - total_rpr_zz - total_rrr_zz
+    M_aa_zz = J_star_zz + M_aa_prr_zz + M_aa_rpr_zz + M_aa_rrr_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x
-    Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y
+    Z_t_x = Z_p_x + Z_t_prr_x + Z_t_rpr_x + Z_t_rrr_x
+    Z_t_y = Z_p_y + Z_t_prr_y + Z_t_rpr_y + Z_t_rrr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_prr_z + total_rpr_z + total_rrr_z - Z_q_t
+    Z_a_z = Z_a_prr_z + Z_a_rpr_z + Z_a_rrr_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
     out_M[4] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[6] = M_ta_xz
     out_M[5] = M_ta_yz
     out_M[7] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[8] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_M, out_Z, out_H,)
 
@@ -2065,7 +2110,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_6, h_star_x, h_star_y, m_star = shared
+    J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2077,82 +2122,84 @@ def _run_M(m, X):
     ok = True
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_2_x,
-            rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_d_phi_2_t = inv_rpr_root_1*rpr_h_2_y
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_yy = (
-        -inv_rpr_root_1*rpr_h_2_x - inv_rpr_root_1*(rpr_h_2_x + inv_rpr_root_1*rpr_J_group_1_zz)
+        rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y
+        rpr_d_c_in_axes1_yy = (
+        -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y - rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
+            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y)
         )
         # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rpr_Q_t = 0.5*rpr_d_c_yy
-        rpr_Q_t_2 = rpr_Q_t*rpr_axis_x_y - rpr_axis_x_x*rpr_d_phi_2_t
-        rpr_Q_t_3 = rpr_Q_t*rpr_axis_x_x + rpr_axis_x_y*rpr_d_phi_2_t
-        rpr_Q_t_4 = 2.0*rpr_Q_t_2*rpr_axis_x_y
-        rpr_Q_t_5 = rpr_Q_t_2*rpr_axis_x_x + rpr_Q_t_3*rpr_axis_x_y
-        rpr_Q_t_6 = 2.0*rpr_Q_t_3*rpr_axis_x_x
+        rpr_Q_t = 0.5*rpr_d_c_in_axes1_yy
+        rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x
+        rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y
+        rpr_Q_xx = -2.0*rpr_Q_t_2*rpr_w_2_y
+        rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y
+        rpr_Q_yy = -2.0*rpr_Q_t_3*rpr_w_2_x
         # (M_ta) coupling block of M
-        rpr_M_ta_t = rpr_Q_t_4*rpr_q_in_base_y + rpr_Q_t_5*rpr_q_in_base_x
-        rpr_M_ta_t_2 = rpr_Q_t_5*rpr_q_in_base_y + rpr_Q_t_6*rpr_q_in_base_x
+        rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y
+        rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y
         # (M_aa) rotational block of M
-        rpr_M_aa_t = rpr_M_ta_t*rpr_q_in_base_y + rpr_M_ta_t_2*rpr_q_in_base_x
+        rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_Q_t_4, rpr_Q_t_5, rpr_Q_t_6, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
+        rpr_Q_xx, rpr_Q_xy, rpr_Q_yy, rpr_M_ta_t, rpr_M_ta_t_2, rpr_M_aa_t,
         ))
-    total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz = sums
+    M_tt_rpr_xx, M_tt_rpr_xy, M_tt_rpr_yy, M_ta_rpr_xz, M_ta_rpr_yz, M_aa_rpr_zz = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
-            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy, rrr_d_phi_2_t,
+            rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2161,156 +2208,167 @@ def _run_M(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
-        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
-        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = (
-        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
-            rrr_d_Gamma_2_x*rrr_w_2_t
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
+        rrr_d_Gamma_2_in_axes2_x = (
+        rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
         )
-        rrr_Q_t_2 = 0.5*rrr_Q_t
-        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
-        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
-        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
-        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
-        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_in_axes2_x = (
+        rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y
+        )
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_in_axes2_xy = (
+        rrr_d_phi_2_t - rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
+        )
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
+        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
+        rrr_Q_t_3 = (
+        rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) - rrr_d_c_in_axes2_yy -
+            rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
+        )
+        rrr_Q_t_4 = 0.5*rrr_Q_t_3
+        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
         # (M_ta) coupling block of M
-        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
-        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
+        rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
         # (M_aa) rotational block of M
-        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
+        rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
+        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
         ))
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz = sums
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz = sums
     sums = [0.0] * 6
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_h_2_x, prr_h_2_y, prr_link1_mass, prr_platform_joint_offset_x,
-            prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_h_2_in_spec2_x, prr_h_2_in_spec2_y, prr_link1_mass,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
         # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
-        prr_w_2_t = inv_prr_v_2_t_2*prr_s_2
-        prr_w_2_t_2 = inv_prr_v_2_t_2*prr_c_2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        # (prr-w_2) reciprocal vector 2
+        prr_w_2_t = prr_s_2*prr_w_1_t
+        prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t
         # (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prr_d_Gamma_2_t = inv_prr_v_2_t_2*prr_J_2_zz
-        prr_d_Gamma_2_x = -prr_h_2_y - prr_d_Gamma_2_t*prr_s_2
-        prr_d_Gamma_2_y = prr_h_2_x + prr_c_2*prr_d_Gamma_2_t
+        prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t
+        prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2
+        prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t
         # (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prr_d_Gamma_1_t = inv_prr_v_2_t_2*prr_link1_mass*prr_v_2_t
-        prr__r0_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
+        prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t
+        prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2
         # (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prr_d_c_xx = (
-        prr_d_Gamma_2_x*prr_w_2_t - prr__r0_x*(-prr_c_2*prr_link1_mass - prr_d_Gamma_1_t*prr_s_2)
-            - prr_h_2_y*prr_w_2_t
+        prr_d_c_in_axes2_xx = (
+        prr_d_Gamma_2_in_axes2_x*prr_w_2_t - prr_h_2_in_spec2_y*prr_w_2_t -
+            prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass + prr_d_Gamma_1_t*prr_s_2)
         )
-        prr_d_c_xy = prr_d_Gamma_2_y*prr_w_2_t + prr_h_2_y*prr_w_2_t_2 - prr__r0_x*prr__r0_y
+        prr_d_c_in_axes2_xy = (
+        prr_d_Gamma_2_in_axes2_y*prr_w_2_t + prr_h_2_in_spec2_y*prr_w_2_in_axes2_y -
+            prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x
+        )
         # (prr-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_Q_t = (
-        prr_d_c_xx + prr__r0_y*(prr_c_2*prr_w_1_t - prr_s_2) + prr_d_Gamma_2_y*prr_w_2_t_2 +
-            prr_h_2_x*prr_w_2_t_2
+        prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*(prr_c_2*prr_w_1_t_2 - prr_s_2) +
+            prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y
         )
         prr_Q_t_2 = 0.5*prr_Q_t
-        prr_Q_t_3 = axis_y_prr_axes2_in_base_x*prr_Q_t_2 - axis_y_prr_axes2_in_base_y*prr_d_c_xy
-        prr_Q_t_4 = axis_y_prr_axes2_in_base_x*prr_d_c_xy + axis_y_prr_axes2_in_base_y*prr_Q_t_2
-        prr_Q_t_5 = 2.0*axis_y_prr_axes2_in_base_x*prr_Q_t_3 - prr_d_c_xx
-        prr_Q_t_6 = axis_y_prr_axes2_in_base_x*prr_Q_t_4 + axis_y_prr_axes2_in_base_y*prr_Q_t_3
-        prr_Q_t_7 = 2.0*axis_y_prr_axes2_in_base_y*prr_Q_t_4 - prr_d_c_xx
+        prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 - axis_x_prr_axes2_x*prr_d_c_in_axes2_xy
+        prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 + axis_y_prr_axes2_x*prr_d_c_in_axes2_xy
+        prr_Q_xx = 2.0*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx
+        prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4
+        prr_Q_yy = 2.0*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx
         # (M_ta) coupling block of M
-        prr_M_ta_t = prr_Q_t_5*prr_q_in_base_y - prr_Q_t_6*prr_q_in_base_x
-        prr_M_ta_t_2 = prr_Q_t_6*prr_q_in_base_y - prr_Q_t_7*prr_q_in_base_x
+        prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y
+        prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y
         # (M_aa) rotational block of M
-        prr_M_aa_t = prr_M_ta_t*prr_q_in_base_y - prr_M_ta_t_2*prr_q_in_base_x
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
         sums = m.added(sums, leg, (
-        prr_Q_t_5, prr_Q_t_6, prr_Q_t_7, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
+        prr_Q_xx, prr_Q_xy, prr_Q_yy, prr_M_ta_t, prr_M_ta_t_2, prr_M_aa_t,
         ))
-    total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz = sums
+    M_tt_prr_xx, M_tt_prr_xy, M_tt_prr_yy, M_ta_prr_xz, M_ta_prr_yz, M_aa_prr_zz = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx
-    M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy
+    M_tt_xx = M_tt_prr_xx + M_tt_rpr_xx + M_tt_rrr_xx + m_star
+    M_tt_xy = M_tt_prr_xy + M_tt_rpr_xy + M_tt_rrr_xy
+    M_tt_yy = M_tt_prr_yy + M_tt_rpr_yy + M_tt_rrr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz
-    M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz
+    M_ta_xz = M_ta_prr_xz + M_ta_rpr_xz + M_ta_rrr_xz - h_star_y
+    M_ta_yz = M_ta_prr_yz + M_ta_rpr_yz + M_ta_rrr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = total_prr_zz - J_star_t_6 - total_rpr_zz - total_rrr_zz
+    M_aa_zz = J_star_zz + M_aa_prr_zz + M_aa_rpr_zz + M_aa_rrr_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[3] = M_tt_xy
     out_M[4] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[6] = M_ta_xz
     out_M[5] = M_ta_yz
     out_M[7] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[8] = M_aa_zz
     return ok, (out_M,)
 
@@ -2321,7 +2379,7 @@ def _run_Z(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
-    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y = shared
+    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2339,111 +2397,124 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_h_1_x,
-            rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-u_1) centripetal acceleration of the connection point
         rpr_u_1_t = omega_z*rpr_S_dot_t_2
-        rpr_u_1_t_2 = omega_z*rpr_S_dot_t
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
-        # (rpr-u_1) centripetal acceleration of the connection point
-        rpr_u_1_tip_y = rpr_axis_x_y*rpr_u_1_t - rpr_axis_x_x*rpr_u_1_t_2
+        rpr_u_1_y = -omega_z*rpr_S_dot_t
+        rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y + axis_x_rpr_axes1_y*rpr_u_1_t
         # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rpr_rel_o_y = rpr_u_1_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_y
-        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_o_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1_o
-        # (rpr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        rpr_g_tip_x = gravity_x*rpr_axis_x_x + gravity_y*rpr_axis_x_y
-        rpr_g_tip_y = gravity_y*rpr_axis_x_x - gravity_x*rpr_axis_x_y
+        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y
         # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rpr_acc_2_o_x = -rpr_g_tip_x - rpr_axis_x_x*rpr_u_1_t - rpr_axis_x_y*rpr_u_1_t_2
-        rpr_acc_2_o_y = rpr_u_1_tip_y - rpr_g_tip_y
+        rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
+        rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
+        rpr_acc_2_o_in_axes1_x = (
+        axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x - axis_x_rpr_axes1_x*rpr_u_1_t
+        )
+        rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y
+        # (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning about its reference point
+        rpr_phi_2_o_in_axes1_x = (
+        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1_o
+        )
         # (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_o_z = (
-        rpr_J_group_1_zz*rpr_qdd_1_o + rpr_acc_2_o_y*rpr_h_2_x + rpr_g_tip_x*rpr_h_1_y -
-            rpr_acc_2_o_x*rpr_h_2_y - rpr_g_tip_y*rpr_h_1_x
+        rpr_mu_1_o_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o + rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_o_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_o_z - rpr_h_2_x*rpr_qdd_1_o
+        rpr_c_o_in_axes1_y = (
+        -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+            rpr_h_2_in_spec1_x*rpr_qdd_1_o
+        )
         # (rpr-U) velocity and gravity terms of the leg force
-        rpr_U_in_base_x = rpr_axis_x_x*rpr_phi_2_o_x + rpr_axis_x_y*rpr_c_o_y
-        rpr_U_in_base_y = rpr_axis_x_y*rpr_phi_2_o_x - rpr_axis_x_x*rpr_c_o_y
+        rpr_U_x = (
+        axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x + axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y
+        )
+        rpr_U_y = (
+        axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x - axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y
+        )
         # (Z_a) rotational part of Z
-        rpr_Z_a_t = rpr_U_in_base_y*rpr_q_in_base_x - rpr_U_in_base_x*rpr_q_in_base_y
+        rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_U_in_base_x, rpr_U_in_base_y, rpr_Z_a_t,
+        rpr_U_x, rpr_U_y, rpr_Z_a_t,
         ))
-    total_rpr_x, total_rpr_y, total_rpr_z = sums
+    Z_t_rpr_x, Z_t_rpr_y, Z_a_rpr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2452,218 +2523,212 @@ def _run_Z(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
-        )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_t = omega_z*rrr_S_dot_t_2
-        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
+        )
         # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
+        rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
+        rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_tip_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
-        )
-        rrr_u_1_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
-        )
         # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
-        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1_o) remainder of the acceleration tensor of link 1
+        rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrr_alpha_2_o_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
+        rrr_alpha_2_o_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_o_in_axes1_xy
         )
         # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_x = (
-        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
+        rrr_acc_2_o_in_axes2_x = (
+        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
-        rrr_acc_2_o_y = (
-        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
+        rrr_acc_2_o_in_axes2_y = (
+        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_o_z = (
-        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
+        rrr_mu_2_o_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_o_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_o_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
-            - rrr_N_1_o_z)
+        rrr_c_o_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
-        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        rrr_c_o_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        )
         # (rrr-U) velocity and gravity terms of the leg force
-        rrr_U_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
-        )
-        rrr_U_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
-        )
+        rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
+        rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
         # (Z_a) rotational part of Z
-        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
+        rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
+        rrr_U_x, rrr_U_y, rrr_Z_a_t,
         ))
-    total_rrr_x, total_rrr_y, total_rrr_z = sums
+    Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+            prr_platform_point_y, prr_size, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
-        # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_t = omega_z*prr_S_dot_t_2
-        prr_u_1_t_2 = omega_z*prr_S_dot_t
+        prr_qd_2_t = -1.0/prr_v_2_in_axes0_y
+        prr_qd_2 = -prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
         prr_W_2_t = prr_qd_2*prr_qd_2
         # (prr-u_1) centripetal acceleration of the connection point
-        prr_u_1_tip_x = (
-        axis_y_prr_axes2_in_base_x*prr_u_1_t_2 - axis_y_prr_axes2_in_base_y*prr_u_1_t
-        )
-        prr_u_1_tip_y = (
-        -axis_y_prr_axes2_in_base_x*prr_u_1_t - axis_y_prr_axes2_in_base_y*prr_u_1_t_2
-        )
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_u_1_x = -omega_z*prr_S_dot_t_2
+        prr_u_1_t = omega_z*prr_S_dot_t
+        prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x + axis_y_prr_axes2_x*prr_u_1_t
+        prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x - axis_x_prr_axes2_x*prr_u_1_t
         # (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prr_rel_o_x = prr_u_1_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prr_qdd_2_o = inv_prr_v_2_t_2*(prr_rel_o_x*prr_s_2 - prr_c_2*prr_u_1_tip_y)
-        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prr_acc_2_o_x = prr_u_1_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
-        prr_acc_2_o_y = prr_u_1_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
-        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prr_mu_2_o_z = prr_acc_2_o_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2_o - prr_acc_2_o_x*prr_h_2_y
+        prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-B_2_o) remainder of the acceleration tensor of link 2
+        prr_B_2_o_in_axes2_xy = (
+        prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y + prr_rel_o_in_axes2_x*prr_s_2)
+        )
         # (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        prr_acc_1_o_x = (
-        -prr_g_r0_x - prr_c_2*prr_rel_o_x - prr_qdd_2_o*prr_v_2_t - prr_s_2*prr_u_1_tip_y
+        prr_acc_1_o_in_axes0_x = (
+        prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x
+            - prr_s_2*prr_u_1_in_axes2_y
         )
         # (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
-        prr_f_1_o_x = prr_acc_1_o_x*prr_link1_mass
-        # (prr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prr_G_o_t = inv_prr_v_2_t_2*(prr_mu_2_o_z + prr_f_1_o_x*prr_v_2_t)
-        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prr_c_o_x = (
-        prr_G_o_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_o_x - prr_h_2_y*prr_qdd_2_o
+        prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass
+        # (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prr_acc_2_o_in_axes2_x = (
+        prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
         )
-        prr_c_o_y = (
-        prr_W_2_t*prr_h_2_y + prr_f_1_o_x*prr_s_2 + prr_h_2_x*prr_qdd_2_o - prr_G_o_t*prr_c_2
+        prr_acc_2_o_in_axes2_y = (
+        prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
+        )
+        # (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_o_in_axes2_z = (
+        prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
+            prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y
+        )
+        # (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z - prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_o_in_axes2_x = (
+        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x
+        )
+        prr_c_o_in_axes2_y = (
+        prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y +
+            prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2
         )
         # (prr-U) velocity and gravity terms of the leg force
-        prr_U_in_base_x = (
-        -axis_y_prr_axes2_in_base_x*prr_c_o_y - axis_y_prr_axes2_in_base_y*prr_c_o_x
-        )
-        prr_U_in_base_y = (
-        axis_y_prr_axes2_in_base_x*prr_c_o_x - axis_y_prr_axes2_in_base_y*prr_c_o_y
-        )
+        prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x - axis_y_prr_axes2_x*prr_c_o_in_axes2_y
+        prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x - axis_x_prr_axes2_x*prr_c_o_in_axes2_y
         # (Z_a) rotational part of Z
-        prr_Z_a_t = prr_U_in_base_y*prr_q_in_base_x - prr_U_in_base_x*prr_q_in_base_y
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
         sums = m.added(sums, leg, (
-        prr_U_in_base_x, prr_U_in_base_y, prr_Z_a_t,
+        prr_U_x, prr_U_y, prr_Z_a_t,
         ))
-    total_prr_x, total_prr_y, total_prr_z = sums
+    Z_t_prr_x, Z_t_prr_y, Z_a_prr_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x
-    Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y
+    Z_t_x = Z_p_x + Z_t_prr_x + Z_t_rpr_x + Z_t_rrr_x
+    Z_t_y = Z_p_y + Z_t_prr_y + Z_t_rpr_y + Z_t_rrr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_prr_z + total_rpr_z + total_rrr_z - Z_q_t
+    Z_a_z = Z_a_prr_z + Z_a_rpr_z + Z_a_rrr_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_Z,)
 
@@ -2691,52 +2756,55 @@ def _run_H(m, X):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
+        rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = rpr_w_2_x
+        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
             rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2745,86 +2813,87 @@ def _run_H(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        rrr_w_1_t = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        rrr_w_1_t_2 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = (
+        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
+        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = (
+        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
+        )
+        rrr_w_1_y = (
+        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
         )
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+        inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
         # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-H_a_1) moment of the column's unit force about the platform origin
-        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
-        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
-        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
+        # (prr-w_1) reciprocal vector 1
+        out_H[_H_prr[0][leg]] = prr_w_1_x
+        out_H[_H_prr[1][leg]] = prr_w_1_y
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
     return ok, (out_H,)
 
@@ -2835,7 +2904,7 @@ def _run_required(m, X, V, A):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2861,124 +2930,136 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
-    f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
+    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
-    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
+    mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_platform_point_x,
-            rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_platform_point_x, rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
-        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
-        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
-        # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
-        # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-a_p) acceleration of the connection point without its centripetal part
-        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
-        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
         rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
         rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
-        rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y
+        rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
-        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
-        rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y - rpr_g_r1_x
-        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
+        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_acc_2_in_axes1_x = (
+        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x
+        )
+        rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-phi_2) inertia force of link 2 from its turning about its reference point
-        rpr_phi_2_x = -rpr_W_1_t*rpr_h_2_x - rpr_h_2_y*rpr_qdd_1
+        rpr_phi_2_in_axes1_x = (
+        rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_h_2_in_spec1_y*rpr_qdd_1
+        )
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_z = (
-        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
-            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
+        rpr_mu_1_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
-        rpr_c_in_base_x = -rpr_axis_x_x*rpr_phi_2_x - rpr_axis_x_y*rpr_c_y
-        rpr_c_in_base_y = rpr_axis_x_x*rpr_c_y - rpr_axis_x_y*rpr_phi_2_x
+        rpr_c_in_axes1_y = (
+        -inv_rpr_root_1*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+            rpr_h_2_in_spec1_x*rpr_qdd_1
+        )
+        rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_in_axes1_y
+        rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y - axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x
         # (R_a) moment that actuators and external wrench must give
-        rpr_R_a_t = rpr_c_in_base_y*rpr_q_in_base_x - rpr_c_in_base_x*rpr_q_in_base_y
+        rpr_R_a_t = rpr_c_x*rpr_q_y - rpr_c_y*rpr_q_x
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_c_in_base_x, rpr_c_in_base_y, rpr_R_a_t,
+        rpr_c_x, rpr_c_y, rpr_R_a_t,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_H[_H_rpr[1][leg]] = axis_x_rpr_axes1_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
-    total_rpr_x, total_rpr_y, total_rpr_z = sums
+    R_t_t, R_t_t_2, R_a_rpr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2987,230 +3068,238 @@ def _run_required(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
-        # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        rrr_S_ddot_tip_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
-        )
-        rrr_S_ddot_tip_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
-        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_x = (
-        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
-        )
-        rrr_acc_2_y = (
-        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1) acceleration tensor of link 1
+        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        rrr_alpha_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_in_axes1_xy
+        )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_in_axes2_x = (
+        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
+        )
+        rrr_acc_2_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        rrr_mu_2_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
+        )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
-            rrr_N_1_z)
+        rrr_c_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
-        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
-        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
-        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
+        rrr_c_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        )
+        rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
+        rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
         # (R_a) moment that actuators and external wrench must give
-        rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y
+        rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_c_in_base_x, rrr_c_in_base_y, rrr_R_a_t,
+        rrr_c_x, rrr_c_y, rrr_R_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
-    total_rrr_x, total_rrr_y, total_rrr_z = sums
+    R_t_t_3, R_t_t_4, R_a_rrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+            prr_platform_point_y, prr_size, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
         prr_W_2_t = prr_qd_2*prr_qd_2
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
-        # (prr-H_a_1) moment of the column's unit force about the platform origin
-        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
         # (prr-a_p) acceleration of the connection point without its centripetal part
-        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
-        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
         prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
-        prr_S_ddot_tip_x = (
-        axis_y_prr_axes2_in_base_y*prr_S_ddot_x - axis_y_prr_axes2_in_base_x*prr_S_ddot_y
-        )
-        prr_S_ddot_tip_y = (
-        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
-        )
+        prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
+        prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-qdd_1) acceleration of joint 1
-        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
-        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
-        prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
-        prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
-        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 - prr_acc_2_x*prr_h_2_y
+        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-B_2) acceleration tensor of link 2
+        prr_B_2_in_axes2_xy = (
+        prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        )
         # (prr-acc_1) acceleration of the reference point of link 1, less gravity
-        prr_acc_1_x = (
-        -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x - prr_qdd_2*prr_v_2_t
+        prr_acc_1_in_axes0_x = (
+        prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+            prr_S_ddot_in_axes2_y*prr_s_2
         )
         # (prr-f_1) inertia force of link 1 less its weight
-        prr_f_1_x = prr_acc_1_x*prr_link1_mass
-        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t)
+        prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_acc_2_in_axes2_x = (
+        prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
+        )
+        prr_acc_2_in_axes2_y = (
+        prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
+        )
+        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_in_axes2_z = (
+        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz -
+            prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y
+        )
         # (prr-c) leg force on the platform without actuation and without the mass at the connection point
-        prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x - prr_h_2_y*prr_qdd_2
-        prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 - prr_G_t*prr_c_2
-        prr_c_in_base_x = axis_y_prr_axes2_in_base_x*prr_c_y + axis_y_prr_axes2_in_base_y*prr_c_x
-        prr_c_in_base_y = axis_y_prr_axes2_in_base_y*prr_c_y - axis_y_prr_axes2_in_base_x*prr_c_x
+        prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_in_axes2_x = (
+        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 - prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y -
+            prr_c_2*prr_f_1_in_axes0_x
+        )
+        prr_c_in_axes2_y = (
+        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t +
+            prr_f_1_in_axes0_x*prr_s_2
+        )
+        prr_c_x = axis_x_prr_axes2_x*prr_c_in_axes2_x + axis_y_prr_axes2_x*prr_c_in_axes2_y
+        prr_c_y = axis_x_prr_axes2_x*prr_c_in_axes2_y - axis_y_prr_axes2_x*prr_c_in_axes2_x
         # (R_a) moment that actuators and external wrench must give
-        prr_R_a_t = prr_c_in_base_y*prr_q_in_base_x - prr_c_in_base_x*prr_q_in_base_y
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
+        prr_R_a_t = prr_c_x*prr_q_y - prr_c_y*prr_q_x
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
         sums = m.added(sums, leg, (
-        prr_c_in_base_x, prr_c_in_base_y, prr_R_a_t,
+        prr_c_x, prr_c_y, prr_R_a_t,
         ))
-        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
-        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        out_H[_H_prr[0][leg]] = prr_w_1_x
+        out_H[_H_prr[1][leg]] = prr_w_1_y
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
-    total_prr_x, total_prr_y, total_prr_z = sums
+    R_t_t_5, R_t_t_6, R_a_prr_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_prr_x - total_rpr_x - total_rrr_x
-    R_t_y = f_p_y - total_prr_y - total_rpr_y - total_rrr_y
+    R_t_x = f_p_x - R_t_t - R_t_t_3 - R_t_t_5
+    R_t_y = f_p_y - R_t_t_2 - R_t_t_4 - R_t_t_6
     # (R_a) moment that actuators and external wrench must give
-    R_a_z = mu_p_z - total_prr_z - total_rpr_z - total_rrr_z
+    R_a_z = R_a_prr_z + R_a_rpr_z + R_a_rrr_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
+    # (R_a) moment that actuators and external wrench must give
     out_required[2] = R_a_z
     return ok, (out_required, out_H,)
 
@@ -3241,27 +3330,28 @@ def _run_inverse_kinematics(m, X):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
         rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
         # (rpr-q_1) displacement of joint 1
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_q_1 = atan2(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1)
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
+        # (rpr-q_1) displacement of joint 1
         out_q[_q_rpr[0][leg]] = rpr_q_1
+        # (rpr-q_2) displacement of joint 2
         out_q[_q_rpr[1][leg]] = rpr_root_1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
             rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
@@ -3270,14 +3360,14 @@ def _run_inverse_kinematics(m, X):
         rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
         rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3286,50 +3376,52 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         # (rrr-q_1) displacement of joint 1
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_q_1 = (
         atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
             inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
         )
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
         # (rrr-q_2) displacement of joint 2
         rrr_q_2 = (
-        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
+        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
+        # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
+        # (rrr-q_2) displacement of joint 2
         out_q[_q_rrr[1][leg]] = rrr_q_2
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
+        inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
+            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
         prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
         prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-q_1) displacement of joint 1
-        prr_q_1_t = prr_branch_1*sqrt(prr_disc_1)
-        prr_q_1 = prr_px_1 + prr_q_1_t
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
+        prr_q_1 = prr_S_in_axes0_x - prr_q_1_t
         # (prr-q_2) displacement of joint 2
         prr_q_2 = (
-        atan2(inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy), -inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t)
+        atan2(inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+            prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t)
         )
         ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
+        # (prr-q_1) displacement of joint 1
         out_q[_q_prr[0][leg]] = prr_q_1
+        # (prr-q_2) displacement of joint 2
         out_q[_q_prr[1][leg]] = prr_q_2
     return ok, (out_q,)
 
@@ -3364,56 +3456,59 @@ def _run_joint_rates(m, X, V):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_x = t_dot_x - omega_z*rpr_q_in_base_y
-        rpr_S_dot_y = t_dot_y + omega_z*rpr_q_in_base_x
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_x = t_dot_x - omega_z*rpr_q_y
+        rpr_S_dot_y = t_dot_y + omega_z*rpr_q_x
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
+        # (rpr-qd_1) rate of joint 1
         out_qd[_qd_rpr[0][leg]] = rpr_qd_1
-        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_tip_x
+        # (rpr-qd_2) rate of joint 2
+        out_qd[_qd_rpr[1][leg]] = rpr_S_dot_in_axes1_x
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3422,84 +3517,86 @@ def _run_joint_rates(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y
-        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x
-        # (rrr-qd_2) rate of joint 2
+        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y
+        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y
+        -(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y
         )
+        # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
-            rrr_r_1_t*rrr_s_2))
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        # (rrr-qd_1) rate of joint 1
+        out_qd[_qd_rrr[0][leg]] = rrr_qd_1
+        # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+        inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = (
-        inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x
-        )
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_x = t_dot_x - omega_z*prr_q_in_base_y
-        prr_S_dot_y = t_dot_y + omega_z*prr_q_in_base_x
-        # (prr-qd_2) rate of joint 2
-        prr_qd_2 = (prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)/prr_v_2_t
-        prr_qd_2_t = (
-        prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx -
-            inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_2*(prr_S_x*prr_base_frame_xy
+        prr_S_dot_x = t_dot_x - omega_z*prr_q_y
+        prr_S_dot_y = t_dot_y + omega_z*prr_q_x
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_y = (
+        -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x
+        )
+        # (prr-qd_1) rate of joint 1
+        prr_qd_1_t = (
+        (prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)/prr_v_2_in_axes0_y
+        )
+        prr_qd_1 = (
+        prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx +
+            inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(prr_S_x*prr_base_frame_xy
             + prr_S_y*prr_base_frame_yy)
         )
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
-        out_qd[_qd_prr[0][leg]] = prr_qd_2_t
-        out_qd[_qd_prr[1][leg]] = -prr_qd_2
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
+        # (prr-qd_1) rate of joint 1
+        out_qd[_qd_prr[0][leg]] = prr_qd_1
+        # (prr-qd_2) rate of joint 2
+        out_qd[_qd_prr[1][leg]] = prr_qd_1_t
     return ok, (out_qd,)
 
 
@@ -3540,73 +3637,78 @@ def _run_joint_accelerations(m, X, V, A):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
         # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
+        inv_rpr_root_1 = 1.0/rpr_root_1
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
         # (rpr-a_p) acceleration of the connection point without its centripetal part
-        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
-        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
         rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
         rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_x = (
-        rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y + rpr_qd_1*rpr_qd_1*rpr_root_1
+        rpr_rel_in_axes1_x = (
+        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y +
+            rpr_qd_1*rpr_qd_1*rpr_root_1
         )
-        rpr_rel_y = (
-        rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_in_axes1_y = (
+        axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x -
+            2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         )
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
+        # (rpr-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rpr[0][leg]] = rpr_qdd_1
-        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_x
+        # (rpr-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_rpr[1][leg]] = rpr_rel_in_axes1_x
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3615,140 +3717,137 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
         )
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        rrr_rel_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y +
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_in_axes2_x = (
+        axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        )
+        rrr_rel_in_axes2_y = (
+        axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x -
             rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         )
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
+        rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        # (rrr-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1_t
+        # (rrr-qdd_2) acceleration of joint 2
         out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+        inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        prr_qd_2_t = -1.0/prr_v_2_in_axes0_y
+        prr_qd_2 = -prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-a_p) acceleration of the connection point without its centripetal part
-        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
-        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
         prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
-        prr_S_ddot_tip_y = (
-        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
-        )
+        prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_x = (
-        axis_y_prr_axes2_in_base_y*prr_S_ddot_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 -
-            axis_y_prr_axes2_in_base_x*prr_S_ddot_y
+        prr_rel_in_axes2_x = (
+        axis_x_prr_axes2_x*prr_S_ddot_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 -
+            axis_y_prr_axes2_x*prr_S_ddot_y
         )
         # (prr-qdd_1) acceleration of joint 1
-        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
-        prr_qdd_1_t = (
-        prr_S_ddot_tip_y*prr_s_2 + prr_c_2*prr_rel_x +
-            prr_platform_joint_offset_x*prr_qdd_2*prr_s_2
+        prr_qdd_1_t = prr_qd_2_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        prr_qdd_1 = (
+        prr_c_2*prr_rel_in_axes2_x - prr_S_ddot_in_axes2_y*prr_s_2 -
+            prr_platform_joint_offset_x*prr_qdd_1_t*prr_s_2
         )
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
-        out_qdd[_qdd_prr[0][leg]] = -prr_qdd_1_t
-        out_qdd[_qdd_prr[1][leg]] = -prr_qdd_2
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
+        # (prr-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_prr[0][leg]] = prr_qdd_1
+        # (prr-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_prr[1][leg]] = -prr_qdd_1_t
     return ok, (out_qdd,)
 
 
@@ -3786,101 +3885,119 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        rpr_J_group_1_zz, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link2_mass,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_J_group_1_in_axes1_zz, rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx,
+            rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
+            rpr_base_point_y, rpr_branch_1, rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y,
+            rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y, rpr_link2_mass, rpr_platform_point_x,
+            rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-S_dot) velocity of the connection point
-        rpr_S_dot_t = omega_z*rpr_q_in_base_y
-        rpr_S_dot_t_2 = omega_z*rpr_q_in_base_x
-        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
-        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
-        rpr_S_dot_tip_x = rpr_S_dot_x*rpr_axis_x_x + rpr_S_dot_y*rpr_axis_x_y
-        # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = inv_rpr_root_1*(rpr_S_dot_y*rpr_axis_x_x - rpr_S_dot_x*rpr_axis_x_y)
-        # (rpr-W_1) centripetal tensor of link 1
-        rpr_W_1_t = rpr_qd_1*rpr_qd_1
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        # (rpr-S_dot) velocity of the connection point
+        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        rpr_S_dot_t = omega_z*rpr_q_y
+        rpr_S_dot_t_2 = omega_z*rpr_q_x
+        rpr_S_dot_x = t_dot_x - rpr_S_dot_t
+        rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
+        rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
+        # (rpr-qd_1) rate of joint 1
+        rpr_qd_1 = (
+        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
+        )
+        # (rpr-W_1) centripetal tensor of link 1
+        rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-a_p) acceleration of the connection point without its centripetal part
-        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_in_base_y
-        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_in_base_x
+        rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
+        rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
         # (rpr-S_ddot) acceleration of the connection point
         rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2
         rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t
-        rpr_S_ddot_tip_y = rpr_S_ddot_y*rpr_axis_x_x - rpr_S_ddot_x*rpr_axis_x_y
+        rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
-        rpr_rel_y = rpr_S_ddot_tip_y - 2.0*rpr_S_dot_tip_x*rpr_qd_1
+        rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_y
+        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
-        rpr_g_r1_x = rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1
-        rpr_g_r1_y = rpr_c_1*rpr_g_r0_y - rpr_g_r0_x*rpr_s_1
-        rpr_acc_2_x = rpr_S_ddot_x*rpr_axis_x_x + rpr_S_ddot_y*rpr_axis_x_y - rpr_g_r1_x
-        rpr_acc_2_y = rpr_S_ddot_tip_y - rpr_g_r1_y
+        rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
+        rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
+        rpr_acc_2_in_axes1_x = (
+        axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x
+        )
+        rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y
         # (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rpr_mu_1_z = (
-        rpr_J_group_1_zz*rpr_qdd_1 + rpr_acc_2_y*rpr_h_2_x + rpr_g_r1_x*rpr_h_1_y -
-            rpr_acc_2_x*rpr_h_2_y - rpr_g_r1_y*rpr_h_1_x
+        rpr_mu_1_in_axes1_z = (
+        rpr_J_group_1_in_axes1_zz*rpr_qdd_1 + rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x +
+            rpr_g_in_axes1_x*rpr_h_1_in_spec1_y - rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y -
+            rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
-        rpr_c_y = rpr_W_1_t*rpr_h_2_y - inv_rpr_root_1*rpr_mu_1_z - rpr_h_2_x*rpr_qdd_1
+        rpr_c_in_axes1_y = (
+        -inv_rpr_root_1*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+            rpr_h_2_in_spec1_x*rpr_qdd_1
+        )
         # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
-        rpr_c_true_x = rpr_W_1_t*rpr_h_2_x + rpr_h_2_y*rpr_qdd_1 - rpr_acc_2_x*rpr_link2_mass
-        rpr_c_true_y = rpr_c_y - rpr_acc_2_y*rpr_link2_mass
-        rpr_c_true_in_base_x = rpr_axis_x_x*rpr_c_true_x - rpr_axis_x_y*rpr_c_true_y
-        rpr_c_true_in_base_y = rpr_axis_x_x*rpr_c_true_y + rpr_axis_x_y*rpr_c_true_x
+        rpr_c_true_in_axes1_x = (
+        rpr_h_2_in_spec1_y*rpr_qdd_1 - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_acc_2_in_axes1_x*rpr_link2_mass
+        )
+        rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass
+        rpr_c_true_x = (
+        axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y
+        )
+        rpr_c_true_y = (
+        axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y + axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x
+        )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
-        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_in_base_x
-        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_in_base_y
-        out_drive[_drive_rpr[0][leg]] = rpr_axis_x_x
-        out_drive[_drive_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_x
+        out_leg_force[_leg_force_rpr[1][leg]] = rpr_c_true_y
+        # (rpr-w_2) reciprocal vector 2
+        out_drive[_drive_rpr[0][leg]] = axis_x_rpr_axes1_x
+        out_drive[_drive_rpr[1][leg]] = axis_x_rpr_axes1_y
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_mu_1_t, rrr_mu_1_t_2,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3889,222 +4006,228 @@ def _run_legs(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x
+        rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x
+        # (rrr-qd_1) rate of joint 1
         rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
         rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_qd_1 + rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*rrr_r_1_in_axes2_x)
         )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        rrr_S_ddot_tip_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
-        )
-        rrr_S_ddot_tip_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
-        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_x = (
-        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
-        )
-        rrr_acc_2_y = (
-        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1) acceleration tensor of link 1
+        rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        rrr_alpha_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_in_axes1_xy
+        )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_in_axes2_x = (
+        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
+        )
+        rrr_acc_2_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        rrr_mu_2_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
+        )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
-            rrr_N_1_z)
+        rrr_c_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
-        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
-        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
-        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
-        rrr_c_true_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
+        rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
+        rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass
+        rrr_c_true_x = (
+        axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y
         )
-        rrr_c_true_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
+        rrr_c_true_y = (
+        axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
-        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
+        # (rrr-w_1) reciprocal vector 1
+        out_drive[_drive_rrr[0][leg]] = rrr_w_1_x
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_y
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_J_2_zz, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_2_x, prr_h_2_y, prr_link1_mass, prr_link2_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+        inv_prr_size_t, prr_J_2_in_spec2_zz, prr_base_frame_xx, prr_base_frame_xy,
+            prr_base_frame_yx, prr_base_frame_yy, prr_base_point_x, prr_base_point_y,
+            prr_branch_1, prr_g_in_axes0_x, prr_g_in_axes0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_link2_mass, prr_platform_joint_offset_x,
+            prr_platform_point_x, prr_platform_point_y, prr_size, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
-        # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_platform_joint_offset_x*prr_s_2
-        prr_v_2_t_2 = prr_c_2*prr_platform_joint_offset_x
-        # (prr-w_2) reciprocal vector 2
-        inv_prr_v_2_t_2 = 1.0/prr_v_2_t_2
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = inv_prr_v_2_t_2*prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
         # (prr-S_dot) velocity of the connection point
-        prr_S_dot_t = omega_z*prr_q_in_base_y
-        prr_S_dot_t_2 = omega_z*prr_q_in_base_x
+        prr_S_dot_t = omega_z*prr_q_y
+        prr_S_dot_t_2 = omega_z*prr_q_x
         prr_S_dot_x = t_dot_x - prr_S_dot_t
         prr_S_dot_y = prr_S_dot_t_2 + t_dot_y
+        # (prr-v_2) velocity of the connection point per rate of joint 2
+        prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
+        # (prr-w_1) reciprocal vector 1
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = -1.0/prr_v_2_in_axes0_y
+        prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
         # (prr-qd_2) rate of joint 2
-        prr_qd_2 = inv_prr_v_2_t_2*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
+        prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy + prr_S_dot_y*prr_base_frame_yy)
         # (prr-W_2) centripetal tensor of link 2
         prr_W_2_t = prr_qd_2*prr_qd_2
-        # (prr-w_1) reciprocal vector 1
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
         # (prr-a_p) acceleration of the connection point without its centripetal part
-        prr_a_p_x = t_ddot_x - alpha_z*prr_q_in_base_y
-        prr_a_p_y = t_ddot_y + alpha_z*prr_q_in_base_x
+        prr_a_p_x = t_ddot_x - alpha_z*prr_q_y
+        prr_a_p_y = t_ddot_y + alpha_z*prr_q_x
         # (prr-S_ddot) acceleration of the connection point
         prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2
         prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t
-        prr_S_ddot_tip_x = (
-        axis_y_prr_axes2_in_base_y*prr_S_ddot_x - axis_y_prr_axes2_in_base_x*prr_S_ddot_y
-        )
-        prr_S_ddot_tip_y = (
-        axis_y_prr_axes2_in_base_x*prr_S_ddot_x + axis_y_prr_axes2_in_base_y*prr_S_ddot_y
-        )
+        prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x - axis_y_prr_axes2_x*prr_S_ddot_y
+        prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y + axis_y_prr_axes2_x*prr_S_ddot_x
         # (prr-rel) acceleration of the connection point left to the joint accelerations
-        prr_rel_x = prr_S_ddot_tip_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
-        # (prr-qdd_1) acceleration of joint 1
-        prr_qdd_2 = inv_prr_v_2_t_2*(prr_rel_x*prr_s_2 - prr_S_ddot_tip_y*prr_c_2)
-        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
-        prr_acc_2_x = prr_S_ddot_tip_x + prr_c_2*prr_g_r0_x - prr_g_r0_y*prr_s_2
-        prr_acc_2_y = prr_S_ddot_tip_y + prr_c_2*prr_g_r0_y + prr_g_r0_x*prr_s_2
-        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prr_mu_2_z = prr_acc_2_y*prr_h_2_x - prr_J_2_zz*prr_qdd_2 - prr_acc_2_x*prr_h_2_y
+        prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x + prr_platform_joint_offset_x*prr_qd_2*prr_qd_2
+        # (prr-B_2) acceleration tensor of link 2
+        prr_B_2_in_axes2_xy = (
+        prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 + prr_rel_in_axes2_x*prr_s_2)
+        )
         # (prr-acc_1) acceleration of the reference point of link 1, less gravity
-        prr_acc_1_x = (
-        -prr_g_r0_x - prr_S_ddot_tip_y*prr_s_2 - prr_c_2*prr_rel_x - prr_qdd_2*prr_v_2_t
+        prr_acc_1_in_axes0_x = (
+        prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x + prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+            prr_S_ddot_in_axes2_y*prr_s_2
         )
         # (prr-f_1) inertia force of link 1 less its weight
-        prr_f_1_x = prr_acc_1_x*prr_link1_mass
-        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prr_G_t = inv_prr_v_2_t_2*(prr_mu_2_z + prr_f_1_x*prr_v_2_t)
+        prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass
+        # (prr-acc_2) acceleration of the reference point of link 2, less gravity
+        prr_acc_2_in_axes2_x = (
+        prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x - prr_g_in_axes0_y*prr_s_2
+        )
+        prr_acc_2_in_axes2_y = (
+        prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 - prr_c_2*prr_g_in_axes0_y
+        )
+        # (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prr_mu_2_in_axes2_z = (
+        prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x - prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz -
+            prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y
+        )
         # (prr-c) leg force on the platform without actuation and without the mass at the connection point
-        prr_c_x = prr_G_t*prr_s_2 + prr_W_2_t*prr_h_2_x + prr_c_2*prr_f_1_x - prr_h_2_y*prr_qdd_2
-        prr_c_y = prr_W_2_t*prr_h_2_y + prr_f_1_x*prr_s_2 + prr_h_2_x*prr_qdd_2 - prr_G_t*prr_c_2
+        prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z - prr_f_1_in_axes0_x*prr_v_2_in_axes0_x)
+        prr_c_in_axes2_x = (
+        prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 - prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y -
+            prr_c_2*prr_f_1_in_axes0_x
+        )
+        prr_c_in_axes2_y = (
+        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x + prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t +
+            prr_f_1_in_axes0_x*prr_s_2
+        )
         # (prr-c_true) leg force on the platform without actuation, the last link's mass included
-        prr_c_true_x = prr_c_x - prr_acc_2_x*prr_link2_mass
-        prr_c_true_y = prr_c_y - prr_acc_2_y*prr_link2_mass
-        prr_c_true_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr_c_true_y + axis_y_prr_axes2_in_base_y*prr_c_true_x
+        prr_c_true_in_axes2_x = prr_c_in_axes2_x - prr_acc_2_in_axes2_x*prr_link2_mass
+        prr_c_true_in_axes2_y = prr_c_in_axes2_y - prr_acc_2_in_axes2_y*prr_link2_mass
+        prr_c_true_x = (
+        axis_x_prr_axes2_x*prr_c_true_in_axes2_x + axis_y_prr_axes2_x*prr_c_true_in_axes2_y
         )
-        prr_c_true_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr_c_true_y - axis_y_prr_axes2_in_base_x*prr_c_true_x
+        prr_c_true_y = (
+        axis_x_prr_axes2_x*prr_c_true_in_axes2_y - axis_y_prr_axes2_x*prr_c_true_in_axes2_x
         )
-        ok = ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(-prr_v_2_t_2) > _TOLERANCE * prr_size))
-        out_leg_force[_leg_force_prr[0][leg]] = prr_c_true_in_base_x
-        out_leg_force[_leg_force_prr[1][leg]] = prr_c_true_in_base_y
-        out_drive[_drive_prr[0][leg]] = prr_w_1_in_base_x
-        out_drive[_drive_prr[1][leg]] = prr_w_1_in_base_y
+        ok = (
+        ok & m.every(leg, (prr_disc_1 >= 0.0) & (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
+        )
+        # (prr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_prr[0][leg]] = prr_c_true_x
+        out_leg_force[_leg_force_prr[1][leg]] = prr_c_true_y
+        # (prr-w_1) reciprocal vector 1
+        out_drive[_drive_prr[0][leg]] = prr_w_1_x
+        out_drive[_drive_prr[1][leg]] = prr_w_1_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4114,7 +4237,7 @@ def _run_potential(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4127,70 +4250,71 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
-        R_yx*h_star_x + m_star*t_y)
+    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
+        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        rpr_b_r0_x, rpr_b_r0_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
-            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1, rpr_g_r0_x,
-            rpr_g_r0_y, rpr_h_1_x, rpr_h_1_y, rpr_h_2_x, rpr_h_2_y, rpr_link1_mass,
-            rpr_platform_point_x, rpr_platform_point_y,
+        rpr_acc_2_t, rpr_acc_2_t_2, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
+            rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_branch_1,
+            rpr_h_1_in_spec1_x, rpr_h_1_in_spec1_y, rpr_h_2_in_spec1_x, rpr_h_2_in_spec1_y,
+            rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y, rpr_potential_t,
+            rpr_potential_t_2,
         ) = k
         # (rpr-S) from the base point to the connection point
         rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
         rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_rpr_root_1 = 1.0/rpr_root_1
         rpr_c_1 = inv_rpr_root_1*rpr_px_1
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
         rpr_s_1 = inv_rpr_root_1*rpr_py_1
         # (potential) potential energy
-        rpr_potential_t = (
-        (rpr_c_1*rpr_g_r0_x + rpr_g_r0_y*rpr_s_1)*(rpr_h_1_x + rpr_h_2_x +
-            rpr_link1_mass*(rpr_b_r0_x*rpr_c_1 + rpr_b_r0_y*rpr_s_1)) + (rpr_c_1*rpr_g_r0_y -
-            rpr_g_r0_x*rpr_s_1)*(rpr_h_1_y + rpr_h_2_y + rpr_link1_mass*(rpr_b_r0_y*rpr_c_1 -
-            rpr_b_r0_x*rpr_s_1))
+        rpr_potential_t_3 = (
+        (rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
+            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
+            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
+            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1)
             > _TOLERANCE * 0.62))
         )
         sums = m.added(sums, leg, (
-        rpr_potential_t,
+        rpr_potential_t_3,
         ))
-    total_rpr, = sums
+    potential_t_2, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
-            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
-            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+            rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
         rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -4199,74 +4323,77 @@ def _run_potential(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
         # (potential) potential energy
-        rrr_potential_t = (
-        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
-            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
-            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
-            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
+        rrr_potential_t_3 = (
+        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
+            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
         sums = m.added(sums, leg, (
-        rrr_potential_t,
+        rrr_potential_t_3,
         ))
-    total_rrr, = sums
+    potential_t_3, = sums
     sums = [0.0] * 1
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, prr_b_r0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
-            prr_g_r0_x, prr_g_r0_y, prr_h_1_x, prr_h_1_y, prr_h_2_x, prr_h_2_y, prr_link1_mass,
-            prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y,
-            prr_potential_t,
+        inv_prr_size_t, prr_b_in_axes0_x, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_g_in_axes0_x,
+            prr_g_in_axes0_y, prr_h_1_in_spec0_x, prr_h_1_in_spec0_y, prr_h_2_in_spec2_x,
+            prr_h_2_in_spec2_y, prr_link1_mass, prr_platform_joint_offset_x, prr_platform_point_x,
+            prr_platform_point_y, prr_potential_t, prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
         prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x - R_yx*prr_platform_point_y
         prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-q_1) displacement of joint 1
-        prr_q_1_t = prr_branch_1*sqrt(prr_disc_1)
-        prr_q_1 = prr_px_1 + prr_q_1_t
+        prr_q_1_t = -prr_branch_1*sqrt(prr_disc_1)
+        prr_q_1 = prr_S_in_axes0_x - prr_q_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_platform_joint_offset_x*prr_q_1_t
+        prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
         # (potential) potential energy
         prr_potential_t_2 = (
-        prr_g_r0_x*(prr_h_1_x + prr_link1_mass*(prr_b_r0_x + prr_q_1) - prr_c_2*prr_h_2_x -
-            prr_h_2_y*prr_s_2) + prr_g_r0_y*(prr_h_1_y + prr_potential_t + prr_h_2_x*prr_s_2 -
-            prr_c_2*prr_h_2_y)
+        prr_g_in_axes0_x*(prr_h_1_in_spec0_x + prr_c_2*prr_h_2_in_spec2_x +
+            prr_link1_mass*(prr_b_in_axes0_x + prr_q_1) - prr_h_2_in_spec2_y*prr_s_2) +
+            prr_g_in_axes0_y*(prr_h_1_in_spec0_y + prr_potential_t + prr_c_2*prr_h_2_in_spec2_y +
+            prr_h_2_in_spec2_x*prr_s_2)
         )
         ok = ok & m.every(leg, (prr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
-        prr_potential_t_2,
+        -prr_potential_t_2,
         ))
-    total_prr, = sums
+    potential_prr, = sums
     # (potential) potential energy
-    potential = -potential_t - total_prr - total_rpr - total_rrr
+    potential = potential_prr - potential_t - potential_t_2 - potential_t_3
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4278,7 +4405,7 @@ def _run_condition(m, X):
     cos = m.cos
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, legs_size = shared
+    b_c_in_platform_x, b_c_in_platform_y, legs_size = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4294,6 +4421,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4303,36 +4431,35 @@ def _run_condition(m, X):
             rpr_platform_point_y,
         ) = k
         # (rpr-S) from the base point to the connection point
-        rpr_q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
-        rpr_q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
-        rpr_S_x = rpr_q_in_base_x + t_x - rpr_base_point_x
-        rpr_S_y = rpr_q_in_base_y + t_y - rpr_base_point_y
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+        rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+        rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
+        rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
         # (rpr-px_1) component along the reference direction
         rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        # (rpr-py_1) component across the reference direction
+        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
         # (rpr-rho2_1) squared amplitude
         rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
         # (rpr-root_1) amplitude, with the sign of the branch
         rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
         # (rpr-w_1) reciprocal vector 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_axis_x_x = inv_rpr_root_1*rpr_S_x
-        rpr_axis_x_y = inv_rpr_root_1*rpr_S_y
-        # (rpr-H_a_2) moment of the column's unit force about the platform origin
-        rpr_H_a_2_z = rpr_axis_x_y*rpr_q_in_base_x - rpr_axis_x_x*rpr_q_in_base_y
-        # (spread) rms distance of the platform points from their centroid
-        rpr_spread_t = b_c_x - rpr_platform_point_x
-        rpr_spread_t_2 = b_c_y - rpr_platform_point_y
-        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
-        # (rpr-rho2_1) squared amplitude
-        rpr_pivot_size = abs(rpr_rho2_1)
-        # (rpr-w_1) reciprocal vector 1
-        rpr_pivot_size_2 = abs(rpr_root_1)
+        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        # (rpr-w_2) reciprocal vector 2
+        rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
+        rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rpr_pivot_size = abs(rpr_rho2_1)
+        rpr_pivot_size_2 = abs(rpr_root_1)
         rpr_least_pivots = (
         least(1.6129032258064515*sqrt(rpr_pivot_size), 1.6129032258064517*rpr_pivot_size_2)
         )
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
+        rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x
+        # (spread) rms distance of the platform points from their centroid
+        rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x
+        rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y
+        rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
         clear = (
         clear & m.every(leg, (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) &
             (abs(rpr_root_1) > _TOLERANCE * 0.62))
@@ -4340,34 +4467,37 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         rpr_spread_t_3,
         ))
-        out_H[_H_rpr[0][leg]] = rpr_axis_x_x
-        out_H[_H_rpr[1][leg]] = rpr_axis_x_y
+        # (rpr-w_2) reciprocal vector 2
+        out_H[_H_rpr[0][leg]] = rpr_w_2_x
+        out_H[_H_rpr[1][leg]] = rpr_w_2_y
+        # (rpr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rpr[2][leg]] = rpr_H_a_2_z
+        # (rpr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rpr[0][leg]] = rpr_least_pivots
-    total_rpr, = sums
+    spread_rpr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
             rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
             rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
             rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -4376,126 +4506,126 @@ def _run_condition(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        rrr_w_1_t = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        rrr_w_1_t_2 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = (
+        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
+        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        rrr_w_1_in_axes2_x = -1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = (
+        rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
+        )
+        rrr_w_1_y = (
+        -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
+        )
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_pivot_size = abs(rrr_rho2_1)
+        rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         # (spread) rms distance of the platform points from their centroid
-        rrr_spread_t = b_c_x - rrr_platform_point_x
-        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y
         rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
-        # (rrr-rho2_1) squared amplitude
-        rrr_pivot_size = abs(rrr_rho2_1)
-        # (rrr-w_1) reciprocal vector 1
-        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_least_pivots = (
-        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
-        )
         clear = (
         clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
-            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         rrr_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
         out_reach[_reach_rrr[0][leg]] = rrr_disc_1
-    total_rrr, = sums
+    spread_rrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[2]:
         (
-        inv_prr_disc_1_t_5, inv_prr_size, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
-            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1, prr_disc_1_t,
+        inv_prr_size, inv_prr_size_t, prr_base_frame_xx, prr_base_frame_xy, prr_base_frame_yx,
+            prr_base_frame_yy, prr_base_point_x, prr_base_point_y, prr_branch_1,
             prr_platform_joint_offset_x, prr_platform_point_x, prr_platform_point_y, prr_size,
+            prr_size_t,
         ) = k
         # (prr-S) from the base point to the connection point
-        prr_q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
-        prr_q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
-        prr_S_x = prr_q_in_base_x + t_x - prr_base_point_x
-        prr_S_y = prr_q_in_base_y + t_y - prr_base_point_y
-        # (prr-px_1) component along axis 1
-        prr_px_1 = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
+        prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y
+        prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x
+        prr_S_x = prr_q_x + t_x - prr_base_point_x
+        prr_S_y = prr_q_y + t_y - prr_base_point_y
+        prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx
         # (prr-disc_1) discriminant of the distance equation
-        prr_disc_1_t_2 = prr_S_x*prr_S_x + prr_S_y*prr_S_y
-        prr_disc_1 = prr_disc_1_t + prr_px_1*prr_px_1 - prr_disc_1_t_2
+        prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y
+        prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t
         # (prr-c_2) cosine of the angle of joint 2 from its reference direction
-        prr_c_2 = inv_prr_disc_1_t_5*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
+        prr_c_2 = -inv_prr_size_t*prr_branch_1*sqrt(prr_disc_1)*prr_platform_joint_offset_x
         # (prr-s_2) sine of the angle of joint 2 from its reference direction
         prr_s_2 = (
-        inv_prr_disc_1_t_5*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
+        inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
             prr_S_y*prr_base_frame_yy)
         )
-        # (prr-w_1) reciprocal vector 1
-        axis_y_prr_axes2_in_base_x = -prr_base_frame_xx*prr_s_2 - prr_base_frame_xy*prr_c_2
-        axis_y_prr_axes2_in_base_y = -prr_base_frame_yx*prr_s_2 - prr_base_frame_yy*prr_c_2
         # (prr-v_2) velocity of the connection point per rate of joint 2
-        prr_v_2_t = prr_c_2*prr_platform_joint_offset_x
+        prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x
         # (prr-w_1) reciprocal vector 1
-        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_t
-        prr__r0_x = -prr_c_2 - prr_s_2*prr_w_1_t
-        prr__r0_y = prr_c_2*prr_w_1_t - prr_s_2
-        prr_w_1_in_base_x = (
-        axis_y_prr_axes2_in_base_x*prr__r0_y + axis_y_prr_axes2_in_base_y*prr__r0_x
-        )
-        prr_w_1_in_base_y = (
-        axis_y_prr_axes2_in_base_y*prr__r0_y - axis_y_prr_axes2_in_base_x*prr__r0_x
-        )
-        # (prr-H_a_1) moment of the column's unit force about the platform origin
-        prr_H_a_1_z = prr_q_in_base_x*prr_w_1_in_base_y - prr_q_in_base_y*prr_w_1_in_base_x
-        # (spread) rms distance of the platform points from their centroid
-        prr_spread_t = b_c_x - prr_platform_point_x
-        prr_spread_t_2 = b_c_y - prr_platform_point_y
-        prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2
-        # (prr-w_2) reciprocal vector 2
-        prr_pivot_size = abs(prr_v_2_t)
+        axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2
+        axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2
+        prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y
+        prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t
+        prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2
+        prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x + axis_y_prr_axes2_x*prr_w_1_in_axes2_y
+        prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y - axis_y_prr_axes2_x*prr_w_1_in_axes2_x
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prr_pivot_size = abs(prr_v_2_in_axes0_y)
         prr_pivot = inv_prr_size*prr_pivot_size
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
+        prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x
+        # (spread) rms distance of the platform points from their centroid
+        prr_spread_t = b_c_in_platform_x - prr_platform_point_x
+        prr_spread_t_2 = b_c_in_platform_y - prr_platform_point_y
+        prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2
         reached = reached & m.every(leg, (prr_disc_1 >= 0.0))
-        clear = clear & m.every(leg, (abs(-prr_v_2_t) > _TOLERANCE * prr_size))
+        clear = clear & m.every(leg, (abs(prr_v_2_in_axes0_y) > _TOLERANCE * prr_size))
         sums = m.added(sums, leg, (
         prr_spread_t_3,
         ))
-        out_H[_H_prr[0][leg]] = prr_w_1_in_base_x
-        out_H[_H_prr[1][leg]] = prr_w_1_in_base_y
+        # (prr-w_1) reciprocal vector 1
+        out_H[_H_prr[0][leg]] = prr_w_1_x
+        out_H[_H_prr[1][leg]] = prr_w_1_y
+        # (prr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prr[2][leg]] = prr_H_a_1_z
+        # (prr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_prr[0][leg]] = prr_pivot
         out_reach[_reach_prr[0][leg]] = prr_disc_1
-    total_prr, = sums
+    spread_prr, = sums
     # (spread) rms distance of the platform points from their centroid
     spread = (
-    sqrt(0.3333333333333333*total_prr + 0.3333333333333333*total_rpr +
-        0.3333333333333333*total_rrr)
+    sqrt(0.3333333333333333*spread_prr + 0.3333333333333333*spread_rpr +
+        0.3333333333333333*spread_rrr)
     )
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

@@ -563,22 +563,22 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_prrr = 0;
-    real total_prrr_x = 0;
-    real total_prrr_y = 0;
-    real total_prrr_xx = 0;
-    real total_prrr_zz = 0;
-    real total_prrr_x_2 = 0;
-    real total_prrr_y_2 = 0;
-    real total_prrr_2 = 0;
-    real total_rrr = 0;
-    real total_rrr_x = 0;
-    real total_rrr_y = 0;
-    real total_rrr_xx = 0;
-    real total_rrr_zz = 0;
-    real total_rrr_x_2 = 0;
-    real total_rrr_y_2 = 0;
-    real total_rrr_2 = 0;
+    real m_star_prrr = 0;
+    real h_star_prrr_in_platform_x = 0;
+    real h_star_prrr_in_platform_y = 0;
+    real J_star_prrr_in_platform_xx = 0;
+    real J_star_prrr_in_platform_zz = 0;
+    real b_c_prrr_in_platform_x = 0;
+    real b_c_prrr_in_platform_y = 0;
+    real legs_size_prrr = 0;
+    real m_star_rrr = 0;
+    real h_star_rrr_in_platform_x = 0;
+    real h_star_rrr_in_platform_y = 0;
+    real J_star_rrr_in_platform_xx = 0;
+    real J_star_rrr_in_platform_zz = 0;
+    real b_c_rrr_in_platform_x = 0;
+    real b_c_rrr_in_platform_y = 0;
+    real legs_size_rrr = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -620,52 +620,74 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real prrr_link3_inertia_zz = params->prrr_link3_inertia[own][2][2];
         static const signed char signs_prrr_branch_2[] = {1};
         const real prrr_branch_2 = signs_prrr_branch_2[own];
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t = prrr_joint3_offset_x*prrr_joint3_offset_x;
-        const real prrr_Kd_2_t_2 = R(0.5)*prrr_Kd_2_t;
-        const real prrr_Kd_2_t_3 = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x;
-        const real prrr_Kd_2_t_4 = R(0.5)*prrr_Kd_2_t_3;
         /* (prrr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real prrr_size_t = R(4.58151643161e-07) + prrr_Kd_2_t + prrr_Kd_2_t_3;
-        const real prrr_size = root(prrr_size_t);
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2_t = prrr_size*prrr_size*prrr_size_t;
-        /* (prrr-xi_2) the vector from joint 2 to the connection point, resolved along link 2 */
-        const real inv_prrr_Kd_2_t = 1/prrr_Kd_2_t;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = 1/prrr_Kd_2_t_3;
-        /* (prrr-rho_tip_3) connection point to the centre of mass of link 3 */
-        const real prrr_rho_tip_3_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x;
-        /* (prrr-h_3) first moment of link 3 about the connection point */
-        const real prrr_h_3_x = prrr_link3_mass*prrr_rho_tip_3_x;
-        const real prrr_h_3_y = prrr_link3_centre_of_mass_y*prrr_link3_mass;
-        /* (prrr-w_3) reciprocal vector 2 */
-        const real inv_prrr_platform_joint_offset_x = 1/prrr_platform_joint_offset_x;
-        /* (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real prrr_d_phi_3_t = inv_prrr_platform_joint_offset_x*prrr_h_3_y;
-        /* (prrr-J_3) inertia tensor of link 3 about the connection point */
-        const real prrr_J_3_t = prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y +
-            prrr_rho_tip_3_x*prrr_rho_tip_3_x;
-        const real prrr_J_3_zz = prrr_link3_inertia_zz + prrr_J_3_t*prrr_link3_mass;
-        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real prrr_d_Gamma_3_t = inv_prrr_platform_joint_offset_x*prrr_J_3_zz;
-        const real prrr_d_Gamma_3_y = prrr_d_Gamma_3_t + prrr_h_3_x;
+        const real prrr_size_t = prrr_joint3_offset_x*prrr_joint3_offset_x;
+        const real prrr_size_t_2 = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x;
+        const real prrr_size_t_3 = R(4.58151643161e-07) + prrr_size_t + prrr_size_t_2;
+        const real prrr_size = root(prrr_size_t_3);
+        /* (prrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real prrr_h_1_in_spec0_x = prrr_link1_centre_of_mass_x*prrr_link1_mass;
+        const real prrr_h_1_in_spec0_y = prrr_link1_centre_of_mass_y*prrr_link1_mass;
+        /* (prrr-h_2) first moment of link 2 about the origin of link 2 */
+        const real prrr_h_2_in_spec2_x = prrr_link2_centre_of_mass_x*prrr_link2_mass;
+        const real prrr_h_2_in_spec2_y = prrr_link2_centre_of_mass_y*prrr_link2_mass;
         /* (prrr-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real prrr_J_2_t = prrr_link2_centre_of_mass_x*prrr_link2_centre_of_mass_x +
             prrr_link2_centre_of_mass_y*prrr_link2_centre_of_mass_y;
-        const real prrr_J_2_zz = prrr_link2_inertia_zz + prrr_J_2_t*prrr_link2_mass;
+        const real prrr_J_2_in_spec2_zz = prrr_link2_inertia_zz + prrr_J_2_t*prrr_link2_mass;
+        /* (prrr-rho_tip_3) connection point to the centre of mass of link 3 */
+        const real prrr_rho_tip_3_in_spec3_x = prrr_link3_centre_of_mass_x -
+            prrr_platform_joint_offset_x;
+        /* (prrr-h_3) first moment of link 3 about the connection point */
+        const real prrr_h_3_in_spec3_x = prrr_link3_mass*prrr_rho_tip_3_in_spec3_x;
+        const real prrr_h_3_in_spec3_y = prrr_link3_centre_of_mass_y*prrr_link3_mass;
+        /* (prrr-J_3) inertia tensor of link 3 about the connection point */
+        const real prrr_J_3_t = prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y +
+            prrr_rho_tip_3_in_spec3_x*prrr_rho_tip_3_in_spec3_x;
+        const real prrr_J_3_in_spec3_zz = prrr_link3_inertia_zz + prrr_J_3_t*prrr_link3_mass;
+        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 2 */
+        const real prrr_Kd_2_t = R(0.5)*prrr_size_t;
+        const real prrr_Kd_2_t_2 = R(0.5)*prrr_size_t_2;
+        /* (prrr-rho2_2) squared amplitude */
+        const real prrr_rho2_2_t = prrr_size*prrr_size*prrr_size_t_3;
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = 1/prrr_size_t;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = 1/prrr_size_t_2;
+        /* (prrr-w_3) reciprocal vector 2 */
+        const real prrr_w_3_in_axes3_y = 1/prrr_platform_joint_offset_x;
+        /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prrr_g_in_axes0_x = gravity_x*prrr_base_frame_xy +
+            gravity_y*prrr_base_frame_yy;
+        /* (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
+        const real prrr_f_1_o_in_axes0_x = -prrr_g_in_axes0_x*prrr_link1_mass;
+        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prrr_g_in_axes0_y = -gravity_x*prrr_base_frame_xx -
+            gravity_y*prrr_base_frame_yx;
+        /* (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real prrr_d_phi_3_t = prrr_h_3_in_spec3_y*prrr_w_3_in_axes3_y;
         /* (prrr-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
-        const real prrr_Jc_2_zz = prrr_J_2_zz + prrr_J_3_zz;
+        const real prrr_Jc_2_in_axes2_zz = prrr_J_2_in_spec2_zz + prrr_J_3_in_spec3_zz;
+        /* (prrr-P_c_1) force that accelerates joint 1, per unit */
+        const real prrr_P_c_1_in_axes0_x = prrr_link1_mass + prrr_link2_mass;
+        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real prrr_d_Gamma_3_t = prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y;
+        const real prrr_d_Gamma_3_in_axes3_y = prrr_d_Gamma_3_t + prrr_h_3_in_spec3_x;
+        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_prrr_rho2_2_t = 1/prrr_rho2_2_t;
+        const real inv_prrr_size = 1/prrr_size;
         /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real prrr_d_G_t = inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_y;
+        const real prrr_d_G_in_axes3_yy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_y;
         /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real prrr_d_c_yy = -prrr_d_G_t - inv_prrr_platform_joint_offset_x*prrr_h_3_x;
+        const real prrr_d_c_in_axes3_yy = -prrr_d_G_in_axes3_yy -
+            prrr_h_3_in_spec3_x*prrr_w_3_in_axes3_y;
         /* (h_star) first moment about the platform origin */
         const real prrr_h_star_t = prrr_link3_mass*prrr_platform_point_x;
         const real prrr_h_star_t_2 = prrr_link3_mass*prrr_platform_point_y;
@@ -674,43 +696,24 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real prrr_J_star_t_2 = prrr_J_star_t + prrr_platform_point_x*prrr_platform_point_x;
         const real prrr_J_star_t_3 = prrr_J_star_t*prrr_link3_mass;
         const real prrr_J_star_t_4 = prrr_J_star_t_2*prrr_link3_mass;
-        /* (prrr-h_2) first moment of link 2 about the origin of link 2 */
-        const real prrr_h_2_x = prrr_link2_centre_of_mass_x*prrr_link2_mass;
-        const real prrr_h_2_y = prrr_link2_centre_of_mass_y*prrr_link2_mass;
-        /* (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prrr_g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy;
-        const real prrr_g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx;
-        /* (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
-        const real prrr_f_1_o_x = prrr_g_r0_x*prrr_link1_mass;
-        /* (prrr-P_c_1) force that accelerates joint 1, per unit */
-        const real prrr_P_c_1_t = prrr_link1_mass + prrr_link2_mass;
-        /* (prrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real prrr_h_1_x = prrr_link1_centre_of_mass_x*prrr_link1_mass;
-        const real prrr_h_1_y = prrr_link1_centre_of_mass_y*prrr_link1_mass;
         /* (potential) potential energy */
-        const real prrr_b_r0_x = prrr_base_frame_xy*prrr_base_point_x +
+        const real prrr_b_in_axes0_x = prrr_base_frame_xy*prrr_base_point_x +
             prrr_base_frame_yy*prrr_base_point_y;
-        const real prrr_b_r0_y = -prrr_base_frame_xx*prrr_base_point_x -
+        const real prrr_b_in_axes0_y = -prrr_base_frame_xx*prrr_base_point_x -
             prrr_base_frame_yx*prrr_base_point_y;
-        const real prrr_potential_t = prrr_b_r0_y*prrr_link1_mass;
-        const real prrr_potential_t_2 = prrr_b_r0_y*prrr_link2_mass;
-        /* (prrr-rho2_2) squared amplitude */
-        const real inv_prrr_rho2_2_t_4 = 1/prrr_rho2_2_t;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real inv_prrr_size = 1/prrr_size;
-        model->inv_prrr_Kd_2_t[leg] = inv_prrr_Kd_2_t;
-        model->inv_prrr_Kd_2_t_7[leg] = inv_prrr_Kd_2_t_7;
-        model->inv_prrr_platform_joint_offset_x[leg] = inv_prrr_platform_joint_offset_x;
-        model->inv_prrr_rho2_2_t_4[leg] = inv_prrr_rho2_2_t_4;
+        const real prrr_potential_t = prrr_b_in_axes0_y*prrr_link1_mass;
+        const real prrr_potential_t_2 = prrr_b_in_axes0_y*prrr_link2_mass;
+        model->inv_prrr_rho2_2_t[leg] = inv_prrr_rho2_2_t;
         model->inv_prrr_size[leg] = inv_prrr_size;
-        model->prrr_J_2_zz[leg] = prrr_J_2_zz;
-        model->prrr_J_3_zz[leg] = prrr_J_3_zz;
-        model->prrr_Jc_2_zz[leg] = prrr_Jc_2_zz;
+        model->inv_prrr_size_t[leg] = inv_prrr_size_t;
+        model->inv_prrr_size_t_2[leg] = inv_prrr_size_t_2;
+        model->prrr_J_2_in_spec2_zz[leg] = prrr_J_2_in_spec2_zz;
+        model->prrr_J_3_in_spec3_zz[leg] = prrr_J_3_in_spec3_zz;
+        model->prrr_Jc_2_in_axes2_zz[leg] = prrr_Jc_2_in_axes2_zz;
+        model->prrr_Kd_2_t[leg] = prrr_Kd_2_t;
         model->prrr_Kd_2_t_2[leg] = prrr_Kd_2_t_2;
-        model->prrr_Kd_2_t_4[leg] = prrr_Kd_2_t_4;
-        model->prrr_P_c_1_t[leg] = prrr_P_c_1_t;
-        model->prrr_b_r0_x[leg] = prrr_b_r0_x;
+        model->prrr_P_c_1_in_axes0_x[leg] = prrr_P_c_1_in_axes0_x;
+        model->prrr_b_in_axes0_x[leg] = prrr_b_in_axes0_x;
         model->prrr_base_frame_xx[leg] = prrr_base_frame_xx;
         model->prrr_base_frame_xy[leg] = prrr_base_frame_xy;
         model->prrr_base_frame_yx[leg] = prrr_base_frame_yx;
@@ -718,20 +721,20 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->prrr_base_point_x[leg] = prrr_base_point_x;
         model->prrr_base_point_y[leg] = prrr_base_point_y;
         model->prrr_branch_2[leg] = prrr_branch_2;
-        model->prrr_d_G_t[leg] = prrr_d_G_t;
+        model->prrr_d_G_in_axes3_yy[leg] = prrr_d_G_in_axes3_yy;
+        model->prrr_d_Gamma_3_in_axes3_y[leg] = prrr_d_Gamma_3_in_axes3_y;
         model->prrr_d_Gamma_3_t[leg] = prrr_d_Gamma_3_t;
-        model->prrr_d_Gamma_3_y[leg] = prrr_d_Gamma_3_y;
-        model->prrr_d_c_yy[leg] = prrr_d_c_yy;
+        model->prrr_d_c_in_axes3_yy[leg] = prrr_d_c_in_axes3_yy;
         model->prrr_d_phi_3_t[leg] = prrr_d_phi_3_t;
-        model->prrr_f_1_o_x[leg] = prrr_f_1_o_x;
-        model->prrr_g_r0_x[leg] = prrr_g_r0_x;
-        model->prrr_g_r0_y[leg] = prrr_g_r0_y;
-        model->prrr_h_1_x[leg] = prrr_h_1_x;
-        model->prrr_h_1_y[leg] = prrr_h_1_y;
-        model->prrr_h_2_x[leg] = prrr_h_2_x;
-        model->prrr_h_2_y[leg] = prrr_h_2_y;
-        model->prrr_h_3_x[leg] = prrr_h_3_x;
-        model->prrr_h_3_y[leg] = prrr_h_3_y;
+        model->prrr_f_1_o_in_axes0_x[leg] = prrr_f_1_o_in_axes0_x;
+        model->prrr_g_in_axes0_x[leg] = prrr_g_in_axes0_x;
+        model->prrr_g_in_axes0_y[leg] = prrr_g_in_axes0_y;
+        model->prrr_h_1_in_spec0_x[leg] = prrr_h_1_in_spec0_x;
+        model->prrr_h_1_in_spec0_y[leg] = prrr_h_1_in_spec0_y;
+        model->prrr_h_2_in_spec2_x[leg] = prrr_h_2_in_spec2_x;
+        model->prrr_h_2_in_spec2_y[leg] = prrr_h_2_in_spec2_y;
+        model->prrr_h_3_in_spec3_x[leg] = prrr_h_3_in_spec3_x;
+        model->prrr_h_3_in_spec3_y[leg] = prrr_h_3_in_spec3_y;
         model->prrr_joint3_offset_x[leg] = prrr_joint3_offset_x;
         model->prrr_link1_mass[leg] = prrr_link1_mass;
         model->prrr_link2_mass[leg] = prrr_link2_mass;
@@ -743,14 +746,15 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->prrr_potential_t_2[leg] = prrr_potential_t_2;
         model->prrr_rho2_2_t[leg] = prrr_rho2_2_t;
         model->prrr_size[leg] = prrr_size;
-        total_prrr += prrr_link3_mass;
-        total_prrr_x += prrr_h_star_t;
-        total_prrr_y += prrr_h_star_t_2;
-        total_prrr_xx += prrr_J_star_t_3;
-        total_prrr_zz += prrr_J_star_t_4;
-        total_prrr_x_2 += prrr_platform_point_x;
-        total_prrr_y_2 += prrr_platform_point_y;
-        total_prrr_2 += prrr_size_t;
+        model->prrr_w_3_in_axes3_y[leg] = prrr_w_3_in_axes3_y;
+        m_star_prrr += prrr_link3_mass;
+        h_star_prrr_in_platform_x += prrr_h_star_t;
+        h_star_prrr_in_platform_y += prrr_h_star_t_2;
+        J_star_prrr_in_platform_xx += prrr_J_star_t_3;
+        J_star_prrr_in_platform_zz += prrr_J_star_t_4;
+        b_c_prrr_in_platform_x += prrr_platform_point_x;
+        b_c_prrr_in_platform_y += prrr_platform_point_y;
+        legs_size_prrr += prrr_size_t_3;
     }
     for (size_t leg = 0; leg < 2; ++leg) {
         const size_t own = leg;
@@ -774,50 +778,61 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {1, 1};
         const real rrr_branch_1 = signs_rrr_branch_1[own];
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
-        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real rrr_size_t = R(4.58151643161e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
-        const real rrr_size = root(rrr_size_t);
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
-        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
-        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
-        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
-        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
-        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
-        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
-            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
-        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
-        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_size_t_3 = R(4.58151643161e-07) + rrr_size_t + rrr_size_t_2;
+        const real rrr_size = root(rrr_size_t_3);
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
+            rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
+        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
+        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = 1/rrr_size_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
+        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
+        const real inv_rrr_size = 1/rrr_size;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
-            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
+        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
         /* (h_star) first moment about the platform origin */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
@@ -826,34 +841,20 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
-        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
         /* (potential) potential energy */
-        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-rho2_1) squared amplitude */
-        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_size = 1/rrr_size;
-        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
-        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
-        model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
         model->inv_rrr_size[leg] = inv_rrr_size;
-        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
-        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
-        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
+        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
+        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
+        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
+        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
+        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
         model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
-        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
-        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
@@ -861,61 +862,67 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
         model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
         model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
-        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
-        model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
-        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
-        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
-        model->rrr_h_1_x[leg] = rrr_h_1_x;
-        model->rrr_h_1_y[leg] = rrr_h_1_y;
-        model->rrr_h_2_x[leg] = rrr_h_2_x;
-        model->rrr_h_2_y[leg] = rrr_h_2_y;
+        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
+        model->rrr_d_phi_2_in_axes2_xy[leg] = rrr_d_phi_2_in_axes2_xy;
+        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
+        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
+        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
+        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
+        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
+        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
+        model->rrr_potential_t[leg] = rrr_potential_t;
+        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
         model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
         model->rrr_size[leg] = rrr_size;
-        total_rrr += rrr_link2_mass;
-        total_rrr_x += rrr_h_star_t;
-        total_rrr_y += rrr_h_star_t_2;
-        total_rrr_xx += rrr_J_star_t_3;
-        total_rrr_zz += rrr_J_star_t_4;
-        total_rrr_x_2 += rrr_platform_point_x;
-        total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += rrr_size_t;
+        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        m_star_rrr += rrr_link2_mass;
+        h_star_rrr_in_platform_x += rrr_h_star_t;
+        h_star_rrr_in_platform_y += rrr_h_star_t_2;
+        J_star_rrr_in_platform_xx += rrr_J_star_t_3;
+        J_star_rrr_in_platform_zz += rrr_J_star_t_4;
+        b_c_rrr_in_platform_x += rrr_platform_point_x;
+        b_c_rrr_in_platform_y += rrr_platform_point_y;
+        legs_size_rrr += rrr_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_prrr + total_rrr;
+    const real m_star = m_star_prrr + m_star_rrr + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_prrr_x + total_rrr_x;
-    const real h_star_y = h_star_t_2 + total_prrr_y + total_rrr_y;
+    const real h_star_in_platform_x = h_star_prrr_in_platform_x + h_star_rrr_in_platform_x +
+        h_star_t;
+    const real h_star_in_platform_y = h_star_prrr_in_platform_y + h_star_rrr_in_platform_y +
+        h_star_t_2;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = J_star_t_3 + total_prrr_xx + total_rrr_xx;
-    const real J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_prrr_zz -
-        total_rrr_zz;
-    const real J_star_t_6 = J_star_t_5 - J_star_xx;
+    const real J_star_in_platform_xx = J_star_prrr_in_platform_xx + J_star_rrr_in_platform_xx
+        + J_star_t_3;
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_prrr_in_platform_zz -
+        J_star_rrr_in_platform_zz - J_star_t_4 - platform_inertia_zz;
+    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_prrr_x_2 +
-        R(0.3333333333333333)*total_rrr_x_2;
-    const real b_c_y = R(0.3333333333333333)*total_prrr_y_2 +
-        R(0.3333333333333333)*total_rrr_y_2;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prrr_in_platform_x +
+        R(0.3333333333333333)*b_c_rrr_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prrr_in_platform_y +
+        R(0.3333333333333333)*b_c_rrr_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.3333333333333333)*total_prrr_2 +
-        R(0.3333333333333333)*total_rrr_2);
-    model->J_star_t_6 = J_star_t_6;
+    const real legs_size = root(R(0.3333333333333333)*legs_size_prrr +
+        R(0.3333333333333333)*legs_size_rrr);
+    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1366,22 +1373,22 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1389,11 +1396,11 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[4*w + k] = t_dot_x;
         s[5*w + k] = t_dot_y;
         s[6*w + k] = omega_z;
-        s[7*w + k] = h_star_in_base_x;
-        s[8*w + k] = h_star_in_base_y;
+        s[7*w + k] = h_star_x;
+        s[8*w + k] = h_star_y;
         s[9*w + k] = Z_p_x;
         s[10*w + k] = Z_p_y;
-        s[11*w + k] = Z_q_t;
+        s[11*w + k] = Z_q_z;
     }
 }
 
@@ -1408,34 +1415,35 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -1443,258 +1451,276 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
-        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
-        /* (prrr-w_3) reciprocal vector 2 */
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real prrr_w_3_t = inv_prrr_platform_joint_offset_x*inv_prrr_r_2_r0_y*prrr_r_2_r0_x;
-        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
-        const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_r0_x;
-        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
-        const real prrr_h_3_y = m->prrr_h_3_y[i];
-        const real prrr_d_Gamma_3_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_J_3_zz -
-            prrr_d_Gamma_3_t_2);
-        /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prrr_Jc_2_zz = m->prrr_Jc_2_zz[i];
-        const real prrr_d_Gamma_2_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_Jc_2_zz -
-            prrr_d_Gamma_3_t_2);
-        /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real prrr_d_G_xx = prrr_d_Gamma_3_x*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_2_x;
-        const real prrr_d_Gamma_3_y = m->prrr_d_Gamma_3_y[i];
-        const real prrr_d_G_xy = prrr_d_Gamma_3_y*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_3_y;
-        /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
-        const real prrr_d_c_xy = prrr_d_phi_3_t - prrr_d_G_xy;
-        /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prrr_d_c_yy = m->prrr_d_c_yy[i];
-        const real prrr_Q_t = prrr_h_3_y*(prrr_w_3_t - inv_prrr_r_2_r0_y) - prrr_d_G_xx -
-            prrr_d_c_yy;
-        const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
-        const real prrr_Q_t_3 = axis_y_prrr_axes3_in_base_x*prrr_d_c_xy +
-            axis_y_prrr_axes3_in_base_y*prrr_Q_t_2;
-        const real prrr_Q_t_4 = axis_y_prrr_axes3_in_base_x*prrr_Q_t_2 -
-            axis_y_prrr_axes3_in_base_y*prrr_d_c_xy;
-        const real prrr_Q_t_5 = prrr_d_c_yy + 2*axis_y_prrr_axes3_in_base_y*prrr_Q_t_3;
-        const real prrr_Q_t_6 = axis_y_prrr_axes3_in_base_x*prrr_Q_t_3 +
-            axis_y_prrr_axes3_in_base_y*prrr_Q_t_4;
-        const real prrr_Q_t_7 = prrr_d_c_yy + 2*axis_y_prrr_axes3_in_base_x*prrr_Q_t_4;
-        /* (M_ta) coupling block of M */
-        const real prrr_M_ta_t = prrr_Q_t_5*prrr_q_in_base_y + prrr_Q_t_6*prrr_q_in_base_x;
-        const real prrr_M_ta_t_2 = prrr_Q_t_6*prrr_q_in_base_y + prrr_Q_t_7*prrr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real prrr_M_aa_t = prrr_M_ta_t*prrr_q_in_base_y + prrr_M_ta_t_2*prrr_q_in_base_x;
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
         /* (prrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real prrr_S_dot_t = omega_z*prrr_q_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
+        const real prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
+        const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
+        const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
+        /* (prrr-w_3) reciprocal vector 2 */
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+        const real prrr_w_3_in_axes3_x =
+            inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
         const real prrr_yd_1 = V[(3)*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_3) rate of joint 3 */
-        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real prrr_omega_3_z =
-            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
-        /* (prrr-u_1) centripetal acceleration of the connection point */
-        const real prrr_u_1_t = omega_z*prrr_S_dot_t_2;
-        const real prrr_u_1_t_2 = omega_z*prrr_S_dot_t;
+        /* (prrr-qd_2) rate of joint 2 */
+        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
         /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
+            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
         /* (prrr-W_3) centripetal tensor of link 3 */
-        const real prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_x = -prrr_W_3_t*prrr_platform_joint_offset_x -
-            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
+        const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
         /* (prrr-u_1) centripetal acceleration of the connection point */
-        const real prrr_u_1_tip_x = axis_y_prrr_axes3_in_base_x*prrr_u_1_t_2 -
-            axis_y_prrr_axes3_in_base_y*prrr_u_1_t;
-        const real prrr_u_1_tip_y = -axis_y_prrr_axes3_in_base_x*prrr_u_1_t -
-            axis_y_prrr_axes3_in_base_y*prrr_u_1_t_2;
+        const real prrr_u_1_x = -omega_z*prrr_S_dot_t_2;
+        const real prrr_u_1_t = omega_z*prrr_S_dot_t;
+        const real prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x +
+            axis_y_prrr_axes3_x*prrr_u_1_t;
+        const real prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x -
+            axis_x_prrr_axes3_x*prrr_u_1_t;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_W_3_t*prrr_platform_joint_offset_x;
         /* (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real prrr_rel_o_x = prrr_u_1_tip_x - prrr_bias_x;
-        const real prrr_rel_o_y = prrr_u_1_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3;
-        /* (prrr-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real prrr_qdd_2_o = inv_prrr_r_2_r0_y*prrr_rel_o_x;
+        const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x;
+        const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
+        /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
         /* (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real prrr_alpha_3_o_z = inv_prrr_platform_joint_offset_x*(prrr_rel_o_y +
-            prrr_qdd_2_o*prrr_r_2_r0_x) - prrr_qdd_2_o;
+        const real prrr_alpha_3_o_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y +
+            prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
+        /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
+        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
+        const real prrr_g_in_axes2_x = prrr_c_2*prrr_g_in_axes0_x + prrr_g_in_axes0_y*prrr_s_2;
+        const real prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_y - prrr_g_in_axes0_x*prrr_s_2;
+        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
+        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
+        const real prrr_link2_mass = m->prrr_link2_mass[i];
+        const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y +
+            prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - prrr_g_in_axes2_x*prrr_link2_mass;
+        const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
+            prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - prrr_g_in_axes2_y*prrr_link2_mass;
         /* (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_o_x = prrr_u_1_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x;
-        const real prrr_acc_3_o_y = prrr_u_1_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y;
+        const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y -
+            axis_x_prrr_axes3_x*gravity_x;
+        const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y -
+            axis_y_prrr_axes3_x*gravity_x;
+        /* (prrr-P_c_2) force that accelerates joint 2, per unit */
+        const real prrr_P_c_2_in_axes0_x = -prrr_c_2*prrr_h_2_in_spec2_y -
+            prrr_h_2_in_spec2_x*prrr_s_2;
         /* (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real prrr_h_3_x = m->prrr_h_3_x[i];
-        const real prrr_mu_3_o_z = prrr_J_3_zz*prrr_alpha_3_o_z + prrr_acc_3_o_y*prrr_h_3_x -
-            prrr_acc_3_o_x*prrr_h_3_y;
-        /* (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
-        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
-        const real prrr_g_r1_x = prrr_c_2*prrr_g_r0_x + prrr_g_r0_y*prrr_s_2;
-        const real prrr_g_r1_y = prrr_c_2*prrr_g_r0_y - prrr_g_r0_x*prrr_s_2;
-        /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real prrr_J_2_zz = m->prrr_J_2_zz[i];
-        const real prrr_h_2_x = m->prrr_h_2_x[i];
-        const real prrr_h_2_y = m->prrr_h_2_y[i];
-        const real prrr_mu_2_o_z = prrr_g_r1_x*prrr_h_2_y - prrr_J_2_zz*prrr_qdd_2_o -
-            prrr_g_r1_y*prrr_h_2_x;
-        /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real prrr_N_2_o_z = prrr_mu_2_o_z + prrr_mu_3_o_z;
-        /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real prrr_G_o_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_o_z;
-        const real prrr_G_o_t_2 = inv_prrr_r_2_r0_y*(prrr_G_o_t*prrr_r_2_r0_x - prrr_N_2_o_z);
-        /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real prrr_c_o_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_o_z*prrr_h_3_y -
-            prrr_G_o_t_2;
-        const real prrr_c_o_y = prrr_W_3_t*prrr_h_3_y - prrr_G_o_t - prrr_alpha_3_o_z*prrr_h_3_x;
-        /* (prrr-U) velocity and gravity terms of the leg force */
-        const real prrr_U_in_base_x = -axis_y_prrr_axes3_in_base_x*prrr_c_o_y -
-            axis_y_prrr_axes3_in_base_y*prrr_c_o_x;
-        const real prrr_U_in_base_y = axis_y_prrr_axes3_in_base_x*prrr_c_o_x -
-            axis_y_prrr_axes3_in_base_y*prrr_c_o_y;
-        /* (Z_a) rotational part of Z */
-        const real prrr_Z_a_t = prrr_U_in_base_y*prrr_q_in_base_x -
-            prrr_U_in_base_x*prrr_q_in_base_y;
-        /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_f_2_o_x = prrr_h_2_y*prrr_qdd_2_o - prrr_W_2_t*prrr_h_2_x -
-            prrr_g_r1_x*prrr_link2_mass;
-        const real prrr_f_2_o_y = -prrr_W_2_t*prrr_h_2_y - prrr_g_r1_y*prrr_link2_mass -
-            prrr_h_2_x*prrr_qdd_2_o;
-        /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
-           the last link left out */
-        const real prrr_f_1_o_x = m->prrr_f_1_o_x[i];
-        const real prrr_T_1_o_x = prrr_c_2*prrr_f_2_o_x - prrr_f_1_o_x - prrr_f_2_o_y*prrr_s_2;
-        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
-           extra freedom of joint 1 */
-        const real prrr_P_1_o_t = axis_y_prrr_axes3_r1_x*prrr_G_o_t +
-            axis_y_prrr_axes3_r1_y*prrr_G_o_t_2;
-        const real prrr_P_1_o = prrr_T_1_o_x - prrr_P_1_o_t;
-        /* (prrr-P_c_2) force that accelerates joint 2, per unit */
-        const real prrr_P_c_2_r0_x = -prrr_c_2*prrr_h_2_y - prrr_h_2_x*prrr_s_2;
-        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
-        const real prrr_d_G_t = m->prrr_d_G_t[i];
-        const real prrr_d_P_1_t = axis_y_prrr_axes3_r1_x*prrr_d_G_t +
-            axis_y_prrr_axes3_r1_y*prrr_d_G_xy;
-        const real prrr_d_P_1_x = -axis_y_prrr_axes3_r1_y*prrr_d_G_xx -
-            inv_prrr_r_2_r0_y*prrr_P_c_2_r0_x -
-            axis_y_prrr_axes3_r1_x*inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_x;
-        const real prrr_d_P_1_in_base_x = axis_y_prrr_axes3_in_base_y*prrr_d_P_1_x -
-            axis_y_prrr_axes3_in_base_x*prrr_d_P_1_t;
-        const real prrr_d_P_1_in_base_y = -axis_y_prrr_axes3_in_base_x*prrr_d_P_1_x -
-            axis_y_prrr_axes3_in_base_y*prrr_d_P_1_t;
-        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-        const real prrr_M_ya_1_z = prrr_d_P_1_in_base_y*prrr_q_in_base_x -
-            prrr_d_P_1_in_base_x*prrr_q_in_base_y;
-        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
-        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
-        /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
+        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
+        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+        const real prrr_mu_3_o_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
+            prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
+            prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y;
+        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real prrr_P_c_1_t = m->prrr_P_c_1_t[i];
-        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_t + prrr_P_c_2_r0_x*prrr_dy_1_qdd_2;
+        const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
+        const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_in_axes3_x;
+        const real prrr_d_Gamma_3_in_axes3_x = -prrr_h_3_in_spec3_y -
+            inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2);
         /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
            links' inertia and weight */
         const real prrr_dy_1_Gamma_3_t =
-            inv_prrr_platform_joint_offset_x*prrr_J_3_zz*(axis_y_prrr_axes3_r1_x +
-            prrr_dy_1_qdd_2*prrr_r_2_r0_x);
-        const real prrr_dy_1_Gamma_3 = prrr_J_3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
+            prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
+            prrr_r_2_in_axes3_x*prrr_w_2_t);
+        const real prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t - prrr_dy_1_Gamma_3_t;
+        /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
+        const real prrr_mu_2_o_in_axes2_z = prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
+            prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
+        /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
+           outwards, the force at the connection point left out */
+        const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
         /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
-        const real prrr_dy_1_Gamma_2 = prrr_P_c_2_r0_x + prrr_Jc_2_zz*prrr_dy_1_qdd_2 -
+        const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
+        const real prrr_dy_1_Gamma_2 = prrr_P_c_2_in_axes0_x + prrr_Jc_2_in_axes2_zz*prrr_w_2_t -
             prrr_dy_1_Gamma_3_t;
+        /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prrr_d_Gamma_2_in_axes3_x = -prrr_h_3_in_spec3_y -
+            inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz - prrr_d_Gamma_3_t_2);
+        /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
+           the last link left out */
+        const real prrr_f_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i];
+        const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x
+            - prrr_f_2_o_in_axes2_y*prrr_s_2;
+        /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prrr_P_c_1_in_axes0_x = m->prrr_P_c_1_in_axes0_x[i];
+        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_w_2_t;
         /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real prrr_dy_1_G_t = inv_prrr_platform_joint_offset_x*prrr_dy_1_Gamma_3;
+        const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
+        /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x;
+        const real prrr_d_Gamma_3_in_axes3_y = m->prrr_d_Gamma_3_in_axes3_y[i];
+        const real prrr_d_G_in_axes3_xy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y;
+        /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
+        const real prrr_G_o_in_axes3_x =
+            inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x -
+            prrr_N_2_o_in_axes2_z);
+        /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
+        const real prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy;
+        /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real prrr_c_o_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
+            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x;
+        const real prrr_c_o_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
+            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x;
+        /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real prrr_d_c_in_axes3_yy = m->prrr_d_c_in_axes3_yy[i];
+        const real prrr_Q_t = prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x - inv_prrr_r_2_in_axes3_y)
+            - prrr_d_G_in_axes3_xx - prrr_d_c_in_axes3_yy;
+        const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
+        const real prrr_Q_t_3 = axis_x_prrr_axes3_x*prrr_Q_t_2 +
+            axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy;
+        const real prrr_Q_t_4 = axis_y_prrr_axes3_x*prrr_Q_t_2 -
+            axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy;
+        const real prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2*axis_x_prrr_axes3_x*prrr_Q_t_3;
+        const real prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3;
+        const real prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2*axis_y_prrr_axes3_x*prrr_Q_t_4;
+        /* (prrr-U) velocity and gravity terms of the leg force */
+        const real prrr_U_x = -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
+            axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
+        const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
+            axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
         /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
            extra freedom of joint 1 */
-        const real prrr_dy_1_P_1_t = axis_y_prrr_axes3_r1_x*prrr_dy_1_G_t +
-            axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y*(prrr_dy_1_G_t*prrr_r_2_r0_x -
-            prrr_dy_1_Gamma_2);
+        const real prrr_dy_1_P_1_t = prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
+            inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
+            - prrr_dy_1_Gamma_2);
         const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y;
-        const real prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y;
+        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
+           freedom of joint 1 */
+        const real prrr_d_G_in_axes3_yy = m->prrr_d_G_in_axes3_yy[i];
+        const real prrr_d_P_1_in_axes3_y = -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x -
+            prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y;
+        const real prrr_d_P_1_in_axes3_x = -inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x -
+            prrr_d_G_in_axes3_xx*prrr_e_1_in_axes3_x -
+            prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y;
+        const real prrr_d_P_1_x = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
+            axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
+        const real prrr_d_P_1_y = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
+            axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
+        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
+        const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x +
+            prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y;
+        const real prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t;
+        /* (M_ta) coupling block of M */
+        const real prrr_M_ta_t = prrr_Q_xy*prrr_q_x - prrr_Q_xx*prrr_q_y;
+        const real prrr_M_ta_t_2 = prrr_Q_yy*prrr_q_x - prrr_Q_xy*prrr_q_y;
+        /* (M_aa) rotational block of M */
+        const real prrr_M_aa_t = prrr_M_ta_t_2*prrr_q_x - prrr_M_ta_t*prrr_q_y;
+        /* (Z_a) rotational part of Z */
+        const real prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y;
+        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
+        const real prrr_M_ya_1_z = prrr_d_P_1_y*prrr_q_x - prrr_d_P_1_x*prrr_q_y;
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t;
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_Q_t_5 : prrr_Q_t_5;  /* total_prrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prrr_Q_t_6 : prrr_Q_t_6;  /* total_prrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prrr_Q_t_7 : prrr_Q_t_7;  /* total_prrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + prrr_M_ta_t : prrr_M_ta_t;  /* total_prrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prrr_M_ta_t_2 : prrr_M_ta_t_2;  /* total_prrr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prrr_M_aa_t : prrr_M_aa_t;  /* total_prrr_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + prrr_U_in_base_x : prrr_U_in_base_x;  /* total_prrr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + prrr_U_in_base_y : prrr_U_in_base_y;  /* total_prrr_y */
-        terms[8*count + k] = add ? terms[8*count + k] + prrr_Z_a_t : prrr_Z_a_t;  /* total_prrr_z */
+        const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_Q_xx : prrr_Q_xx;  /* M_tt_prrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prrr_Q_xy : prrr_Q_xy;  /* M_tt_prrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prrr_Q_yy : prrr_Q_yy;  /* M_tt_prrr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + prrr_M_ta_t : prrr_M_ta_t;  /* M_ta_prrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + prrr_M_ta_t_2 : prrr_M_ta_t_2;  /* M_ta_prrr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + prrr_M_aa_t : prrr_M_aa_t;  /* M_aa_prrr_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + prrr_U_x : prrr_U_x;  /* Z_t_prrr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + prrr_U_y : prrr_U_y;  /* Z_t_prrr_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + prrr_Z_a_t : prrr_Z_a_t;  /* Z_a_prrr_z */
+        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
         o[0*count + k] = prrr_P_1_o;
-        o[1*count + k] = prrr_d_P_1_in_base_x;
-        o[2*count + k] = prrr_d_P_1_in_base_x;
-        o[3*count + k] = prrr_d_P_1_in_base_y;
-        o[4*count + k] = prrr_d_P_1_in_base_y;
+        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
+           freedom of joint 1 */
+        o[1*count + k] = prrr_d_P_1_x;
+        o[2*count + k] = prrr_d_P_1_x;
+        o[3*count + k] = prrr_d_P_1_y;
+        o[4*count + k] = prrr_d_P_1_y;
+        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
         o[5*count + k] = prrr_M_ya_1_z;
         o[6*count + k] = prrr_M_ya_1_z;
+        /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
         o[7*count + k] = prrr_dy_1_P_1;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[8*count + k] = 1;
-        o[9*count + k] = -prrr_w_2_t;
-        o[10*count + k] = prrr_w_2_t_2;
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[9*count + k] = prrr_w_2_x;
+        o[10*count + k] = prrr_w_2_y;
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
         o[11*count + k] = prrr_H_a_2_z;
-        o[12*count + k] = prrr_dy_1_qdd_2;
-        o[15*count + k] = ((prrr_P_1_o + prrr_d_P_1_in_base_x) + (prrr_d_P_1_in_base_y +
-            prrr_M_ya_1_z)) + ((prrr_dy_1_P_1 + prrr_w_2_t) + (prrr_w_2_t_2 + (prrr_H_a_2_z +
-            prrr_dy_1_qdd_2)));
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[12*count + k] = prrr_w_2_t;
+        o[15*count + k] = ((prrr_P_1_o + prrr_d_P_1_x) + (prrr_d_P_1_y + prrr_M_ya_1_z)) +
+            ((prrr_dy_1_P_1 + prrr_w_2_x) + (prrr_w_2_y + (prrr_H_a_2_z + prrr_w_2_t)));
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[14*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[13*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -1733,31 +1759,31 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -1767,176 +1793,185 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
-            rrr_d_Gamma_2_t_2);
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
-        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
-            rrr_d_Gamma_2_t_2);
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
-            rrr_d_Gamma_2_y*rrr_w_2_t;
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
-            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
-        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
-        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
-        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_w_2_in_axes2_x =
+            inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
-        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+            axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+            axis_x_rrr_axes2_x*rrr_u_1_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
-        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+        const real rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
-            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
+            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
-            rrr_acc_2_o_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
+        const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+        const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+        const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
+        const real rrr_d_c_in_axes2_xy = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
+            rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
-        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
+        const real rrr_Q_t = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x +
+            rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x - inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy
+            - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
-        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
-        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -1959,55 +1994,60 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_prrr_xx = sums[0*w + k];
+        const real M_tt_rrr_xx = sums[9*w + k];
         const real m_star = m->m_star;
-        const real total_prrr_xx = sums[0*w + k];
-        const real total_rrr_xx = sums[9*w + k];
-        const real M_tt_xx = m_star - total_prrr_xx - total_rrr_xx;
-        const real total_prrr_xy = sums[1*w + k];
-        const real total_rrr_xy = sums[10*w + k];
-        const real M_tt_xy = total_prrr_xy + total_rrr_xy;
-        const real total_prrr_yy = sums[2*w + k];
-        const real total_rrr_yy = sums[11*w + k];
-        const real M_tt_yy = m_star - total_prrr_yy - total_rrr_yy;
+        const real M_tt_xx = M_tt_prrr_xx + M_tt_rrr_xx + m_star;
+        const real M_tt_prrr_xy = sums[1*w + k];
+        const real M_tt_rrr_xy = sums[10*w + k];
+        const real M_tt_xy = M_tt_prrr_xy + M_tt_rrr_xy;
+        const real M_tt_prrr_yy = sums[2*w + k];
+        const real M_tt_rrr_yy = sums[11*w + k];
+        const real M_tt_yy = M_tt_prrr_yy + M_tt_rrr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[8*w + k];
-        const real total_prrr_xz = sums[3*w + k];
-        const real total_rrr_xz = sums[12*w + k];
-        const real M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y;
-        const real h_star_in_base_x = s[7*w + k];
-        const real total_prrr_yz = sums[4*w + k];
-        const real total_rrr_yz = sums[13*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz;
+        const real M_ta_prrr_xz = sums[3*w + k];
+        const real M_ta_rrr_xz = sums[12*w + k];
+        const real h_star_y = s[8*w + k];
+        const real M_ta_xz = M_ta_prrr_xz + M_ta_rrr_xz - h_star_y;
+        const real M_ta_prrr_yz = sums[4*w + k];
+        const real M_ta_rrr_yz = sums[13*w + k];
+        const real h_star_x = s[7*w + k];
+        const real M_ta_yz = M_ta_prrr_yz + M_ta_rrr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_prrr_zz = sums[5*w + k];
-        const real total_rrr_zz = sums[14*w + k];
-        const real M_aa_zz = -J_star_t_6 - total_prrr_zz - total_rrr_zz;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_prrr_zz = sums[5*w + k];
+        const real M_aa_rrr_zz = sums[14*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prrr_zz + M_aa_rrr_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[9*w + k];
-        const real total_prrr_x = sums[6*w + k];
-        const real total_rrr_x = sums[15*w + k];
-        const real Z_t_x = Z_p_x + total_prrr_x + total_rrr_x;
+        const real Z_t_prrr_x = sums[6*w + k];
+        const real Z_t_rrr_x = sums[15*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prrr_x + Z_t_rrr_x;
         const real Z_p_y = s[10*w + k];
-        const real total_prrr_y = sums[7*w + k];
-        const real total_rrr_y = sums[16*w + k];
-        const real Z_t_y = Z_p_y + total_prrr_y + total_rrr_y;
+        const real Z_t_prrr_y = sums[7*w + k];
+        const real Z_t_rrr_y = sums[16*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prrr_y + Z_t_rrr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[11*w + k];
-        const real total_prrr_z = sums[8*w + k];
-        const real total_rrr_z = sums[17*w + k];
-        const real Z_a_z = total_prrr_z + total_rrr_z - Z_q_t;
+        const real Z_a_prrr_z = sums[8*w + k];
+        const real Z_a_rrr_z = sums[17*w + k];
+        const real Z_q_z = s[11*w + k];
+        const real Z_a_z = Z_a_prrr_z + Z_a_rrr_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_xy;
         M[5*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[8*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_yz;
         M[9*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[10*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
         t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
             + (Z_t_y + Z_a_z)));
@@ -2070,16 +2110,16 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
-        s[4*w + k] = h_star_in_base_x;
-        s[5*w + k] = h_star_in_base_y;
+        s[4*w + k] = h_star_x;
+        s[5*w + k] = h_star_y;
     }
 }
 
@@ -2094,34 +2134,35 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -2129,141 +2170,152 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
         /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
-        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
         /* (prrr-w_3) reciprocal vector 2 */
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real prrr_w_3_t = inv_prrr_platform_joint_offset_x*inv_prrr_r_2_r0_y*prrr_r_2_r0_x;
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+        const real prrr_w_3_in_axes3_x =
+            inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y;
+        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real prrr_dy_1_qdd_2 = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
+        /* (prrr-P_c_2) force that accelerates joint 2, per unit */
+        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
+        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
+        const real prrr_P_c_2_in_axes0_x = -prrr_c_2*prrr_h_2_in_spec2_y -
+            prrr_h_2_in_spec2_x*prrr_s_2;
         /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
         const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
-        const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_r0_x;
-        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
-        const real prrr_h_3_y = m->prrr_h_3_y[i];
-        const real prrr_d_Gamma_3_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_J_3_zz -
-            prrr_d_Gamma_3_t_2);
+        const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_in_axes3_x;
+        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
+        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+        const real prrr_d_Gamma_3_in_axes3_x = -prrr_h_3_in_spec3_y -
+            inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2);
+        /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
+           links' inertia and weight */
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_dy_1_Gamma_3_t =
+            prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
+            prrr_dy_1_qdd_2*prrr_r_2_in_axes3_x);
+        const real prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
+        /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
+        const real prrr_dy_1_Gamma_2 = prrr_P_c_2_in_axes0_x +
+            prrr_Jc_2_in_axes2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
         /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real prrr_Jc_2_zz = m->prrr_Jc_2_zz[i];
-        const real prrr_d_Gamma_2_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_Jc_2_zz -
-            prrr_d_Gamma_3_t_2);
+        const real prrr_d_Gamma_2_in_axes3_x = -prrr_h_3_in_spec3_y -
+            inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz - prrr_d_Gamma_3_t_2);
+        /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prrr_P_c_1_in_axes0_x = m->prrr_P_c_1_in_axes0_x[i];
+        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x +
+            prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2;
+        /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
         /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real prrr_d_G_xx = prrr_d_Gamma_3_x*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_2_x;
-        const real prrr_d_Gamma_3_y = m->prrr_d_Gamma_3_y[i];
-        const real prrr_d_G_xy = prrr_d_Gamma_3_y*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_3_y;
+        const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x;
+        const real prrr_d_Gamma_3_in_axes3_y = m->prrr_d_Gamma_3_in_axes3_y[i];
+        const real prrr_d_G_in_axes3_xy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y;
         /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
         const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
-        const real prrr_d_c_xy = prrr_d_phi_3_t - prrr_d_G_xy;
+        const real prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy;
         /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prrr_d_c_yy = m->prrr_d_c_yy[i];
-        const real prrr_Q_t = prrr_h_3_y*(prrr_w_3_t - inv_prrr_r_2_r0_y) - prrr_d_G_xx -
-            prrr_d_c_yy;
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real prrr_d_c_in_axes3_yy = m->prrr_d_c_in_axes3_yy[i];
+        const real prrr_Q_t = prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x - inv_prrr_r_2_in_axes3_y)
+            - prrr_d_G_in_axes3_xx - prrr_d_c_in_axes3_yy;
         const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
-        const real prrr_Q_t_3 = axis_y_prrr_axes3_in_base_x*prrr_d_c_xy +
-            axis_y_prrr_axes3_in_base_y*prrr_Q_t_2;
-        const real prrr_Q_t_4 = axis_y_prrr_axes3_in_base_x*prrr_Q_t_2 -
-            axis_y_prrr_axes3_in_base_y*prrr_d_c_xy;
-        const real prrr_Q_t_5 = prrr_d_c_yy + 2*axis_y_prrr_axes3_in_base_y*prrr_Q_t_3;
-        const real prrr_Q_t_6 = axis_y_prrr_axes3_in_base_x*prrr_Q_t_3 +
-            axis_y_prrr_axes3_in_base_y*prrr_Q_t_4;
-        const real prrr_Q_t_7 = prrr_d_c_yy + 2*axis_y_prrr_axes3_in_base_x*prrr_Q_t_4;
-        /* (M_ta) coupling block of M */
-        const real prrr_M_ta_t = prrr_Q_t_5*prrr_q_in_base_y + prrr_Q_t_6*prrr_q_in_base_x;
-        const real prrr_M_ta_t_2 = prrr_Q_t_6*prrr_q_in_base_y + prrr_Q_t_7*prrr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real prrr_M_aa_t = prrr_M_ta_t*prrr_q_in_base_y + prrr_M_ta_t_2*prrr_q_in_base_x;
-        /* (prrr-P_c_2) force that accelerates joint 2, per unit */
-        const real prrr_h_2_x = m->prrr_h_2_x[i];
-        const real prrr_h_2_y = m->prrr_h_2_y[i];
-        const real prrr_P_c_2_r0_x = -prrr_c_2*prrr_h_2_y - prrr_h_2_x*prrr_s_2;
-        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
-           freedom of joint 1 */
-        const real prrr_d_G_t = m->prrr_d_G_t[i];
-        const real prrr_d_P_1_t = axis_y_prrr_axes3_r1_x*prrr_d_G_t +
-            axis_y_prrr_axes3_r1_y*prrr_d_G_xy;
-        const real prrr_d_P_1_x = -axis_y_prrr_axes3_r1_y*prrr_d_G_xx -
-            inv_prrr_r_2_r0_y*prrr_P_c_2_r0_x -
-            axis_y_prrr_axes3_r1_x*inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_x;
-        const real prrr_d_P_1_in_base_x = axis_y_prrr_axes3_in_base_y*prrr_d_P_1_x -
-            axis_y_prrr_axes3_in_base_x*prrr_d_P_1_t;
-        const real prrr_d_P_1_in_base_y = -axis_y_prrr_axes3_in_base_x*prrr_d_P_1_x -
-            axis_y_prrr_axes3_in_base_y*prrr_d_P_1_t;
-        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-        const real prrr_M_ya_1_z = prrr_d_P_1_in_base_y*prrr_q_in_base_x -
-            prrr_d_P_1_in_base_x*prrr_q_in_base_y;
-        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
-        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
-        /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prrr_P_c_1_t = m->prrr_P_c_1_t[i];
-        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_t + prrr_P_c_2_r0_x*prrr_dy_1_qdd_2;
-        /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
-           links' inertia and weight */
-        const real prrr_dy_1_Gamma_3_t =
-            inv_prrr_platform_joint_offset_x*prrr_J_3_zz*(axis_y_prrr_axes3_r1_x +
-            prrr_dy_1_qdd_2*prrr_r_2_r0_x);
-        const real prrr_dy_1_Gamma_3 = prrr_J_3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
-        /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real prrr_dy_1_Gamma_2 = prrr_P_c_2_r0_x + prrr_Jc_2_zz*prrr_dy_1_qdd_2 -
-            prrr_dy_1_Gamma_3_t;
-        /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real prrr_dy_1_G_t = inv_prrr_platform_joint_offset_x*prrr_dy_1_Gamma_3;
+        const real prrr_Q_t_3 = axis_x_prrr_axes3_x*prrr_Q_t_2 +
+            axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy;
+        const real prrr_Q_t_4 = axis_y_prrr_axes3_x*prrr_Q_t_2 -
+            axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy;
+        const real prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2*axis_x_prrr_axes3_x*prrr_Q_t_3;
+        const real prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3;
+        const real prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2*axis_y_prrr_axes3_x*prrr_Q_t_4;
         /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
            extra freedom of joint 1 */
-        const real prrr_dy_1_P_1_t = axis_y_prrr_axes3_r1_x*prrr_dy_1_G_t +
-            axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y*(prrr_dy_1_G_t*prrr_r_2_r0_x -
-            prrr_dy_1_Gamma_2);
+        const real prrr_dy_1_P_1_t = prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
+            inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
+            - prrr_dy_1_Gamma_2);
         const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t;
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_Q_t_5 : prrr_Q_t_5;  /* total_prrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prrr_Q_t_6 : prrr_Q_t_6;  /* total_prrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prrr_Q_t_7 : prrr_Q_t_7;  /* total_prrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + prrr_M_ta_t : prrr_M_ta_t;  /* total_prrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + prrr_M_ta_t_2 : prrr_M_ta_t_2;  /* total_prrr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prrr_M_aa_t : prrr_M_aa_t;  /* total_prrr_zz */
-        o[0*count + k] = prrr_d_P_1_in_base_x;
-        o[1*count + k] = prrr_d_P_1_in_base_x;
-        o[2*count + k] = prrr_d_P_1_in_base_y;
-        o[3*count + k] = prrr_d_P_1_in_base_y;
+        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
+           freedom of joint 1 */
+        const real prrr_d_G_in_axes3_yy = m->prrr_d_G_in_axes3_yy[i];
+        const real prrr_d_P_1_in_axes3_y = -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x -
+            prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y;
+        const real prrr_d_P_1_in_axes3_x = -inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x -
+            prrr_d_G_in_axes3_xx*prrr_e_1_in_axes3_x -
+            prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y;
+        const real prrr_d_P_1_x = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
+            axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
+        const real prrr_d_P_1_y = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
+            axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
+        /* (M_ta) coupling block of M */
+        const real prrr_M_ta_t = prrr_Q_xy*prrr_q_x - prrr_Q_xx*prrr_q_y;
+        const real prrr_M_ta_t_2 = prrr_Q_yy*prrr_q_x - prrr_Q_xy*prrr_q_y;
+        /* (M_aa) rotational block of M */
+        const real prrr_M_aa_t = prrr_M_ta_t_2*prrr_q_x - prrr_M_ta_t*prrr_q_y;
+        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
+        const real prrr_M_ya_1_z = prrr_d_P_1_y*prrr_q_x - prrr_d_P_1_x*prrr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_Q_xx : prrr_Q_xx;  /* M_tt_prrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + prrr_Q_xy : prrr_Q_xy;  /* M_tt_prrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + prrr_Q_yy : prrr_Q_yy;  /* M_tt_prrr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + prrr_M_ta_t : prrr_M_ta_t;  /* M_ta_prrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + prrr_M_ta_t_2 : prrr_M_ta_t_2;  /* M_ta_prrr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + prrr_M_aa_t : prrr_M_aa_t;  /* M_aa_prrr_zz */
+        /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
+           freedom of joint 1 */
+        o[0*count + k] = prrr_d_P_1_x;
+        o[1*count + k] = prrr_d_P_1_x;
+        o[2*count + k] = prrr_d_P_1_y;
+        o[3*count + k] = prrr_d_P_1_y;
+        /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
         o[4*count + k] = prrr_M_ya_1_z;
         o[5*count + k] = prrr_M_ya_1_z;
+        /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
         o[6*count + k] = prrr_dy_1_P_1;
-        o[9*count + k] = (prrr_d_P_1_in_base_x + prrr_d_P_1_in_base_y) + (prrr_M_ya_1_z +
-            prrr_dy_1_P_1);
+        o[9*count + k] = (prrr_d_P_1_x + prrr_d_P_1_y) + (prrr_M_ya_1_z + prrr_dy_1_P_1);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[8*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[7*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -2295,31 +2347,31 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2329,85 +2381,87 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
         /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_w_2_in_axes2_x =
+            inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
         const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
-            rrr_d_Gamma_2_t_2);
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
-        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
-            rrr_d_Gamma_2_t_2);
+        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+        const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
-            rrr_d_Gamma_2_y*rrr_w_2_t;
+        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+        const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
+        const real rrr_d_c_in_axes2_xy = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
+            rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
-            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
-        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
-        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
+        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
+        const real rrr_Q_t_3 = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x +
+            rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x - inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy
+            - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
+        const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
+            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
+            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
+        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
-        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2425,38 +2479,41 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_prrr_xx = sums[0*w + k];
+        const real M_tt_rrr_xx = sums[6*w + k];
         const real m_star = m->m_star;
-        const real total_prrr_xx = sums[0*w + k];
-        const real total_rrr_xx = sums[6*w + k];
-        const real M_tt_xx = m_star - total_prrr_xx - total_rrr_xx;
-        const real total_prrr_xy = sums[1*w + k];
-        const real total_rrr_xy = sums[7*w + k];
-        const real M_tt_xy = total_prrr_xy + total_rrr_xy;
-        const real total_prrr_yy = sums[2*w + k];
-        const real total_rrr_yy = sums[8*w + k];
-        const real M_tt_yy = m_star - total_prrr_yy - total_rrr_yy;
+        const real M_tt_xx = M_tt_prrr_xx + M_tt_rrr_xx + m_star;
+        const real M_tt_prrr_xy = sums[1*w + k];
+        const real M_tt_rrr_xy = sums[7*w + k];
+        const real M_tt_xy = M_tt_prrr_xy + M_tt_rrr_xy;
+        const real M_tt_prrr_yy = sums[2*w + k];
+        const real M_tt_rrr_yy = sums[8*w + k];
+        const real M_tt_yy = M_tt_prrr_yy + M_tt_rrr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[5*w + k];
-        const real total_prrr_xz = sums[3*w + k];
-        const real total_rrr_xz = sums[9*w + k];
-        const real M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y;
-        const real h_star_in_base_x = s[4*w + k];
-        const real total_prrr_yz = sums[4*w + k];
-        const real total_rrr_yz = sums[10*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz;
+        const real M_ta_prrr_xz = sums[3*w + k];
+        const real M_ta_rrr_xz = sums[9*w + k];
+        const real h_star_y = s[5*w + k];
+        const real M_ta_xz = M_ta_prrr_xz + M_ta_rrr_xz - h_star_y;
+        const real M_ta_prrr_yz = sums[4*w + k];
+        const real M_ta_rrr_yz = sums[10*w + k];
+        const real h_star_x = s[4*w + k];
+        const real M_ta_yz = M_ta_prrr_yz + M_ta_rrr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_prrr_zz = sums[5*w + k];
-        const real total_rrr_zz = sums[11*w + k];
-        const real M_aa_zz = -J_star_t_6 - total_prrr_zz - total_rrr_zz;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_prrr_zz = sums[5*w + k];
+        const real M_aa_rrr_zz = sums[11*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prrr_zz + M_aa_rrr_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_xy;
         M[5*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[8*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_yz;
         M[9*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[10*w + k] = M_aa_zz;
         t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
@@ -2520,22 +2577,22 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -2545,7 +2602,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[6*w + k] = omega_z;
         s[7*w + k] = Z_p_x;
         s[8*w + k] = Z_p_y;
-        s[9*w + k] = Z_q_t;
+        s[9*w + k] = Z_q_z;
     }
 }
 
@@ -2560,34 +2617,35 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -2595,151 +2653,158 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
-        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
         /* (prrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real prrr_S_dot_t = omega_z*prrr_q_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
         const real prrr_yd_1 = V[(3)*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_3) rate of joint 3 */
-        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real prrr_omega_3_z =
-            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
-        /* (prrr-u_1) centripetal acceleration of the connection point */
-        const real prrr_u_1_t = omega_z*prrr_S_dot_t_2;
-        const real prrr_u_1_t_2 = omega_z*prrr_S_dot_t;
+        /* (prrr-qd_2) rate of joint 2 */
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
         /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
+            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
         /* (prrr-W_3) centripetal tensor of link 3 */
-        const real prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_x = -prrr_W_3_t*prrr_platform_joint_offset_x -
-            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
+        const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
         /* (prrr-u_1) centripetal acceleration of the connection point */
-        const real prrr_u_1_tip_x = axis_y_prrr_axes3_in_base_x*prrr_u_1_t_2 -
-            axis_y_prrr_axes3_in_base_y*prrr_u_1_t;
-        const real prrr_u_1_tip_y = -axis_y_prrr_axes3_in_base_x*prrr_u_1_t -
-            axis_y_prrr_axes3_in_base_y*prrr_u_1_t_2;
+        const real prrr_u_1_x = -omega_z*prrr_S_dot_t_2;
+        const real prrr_u_1_t = omega_z*prrr_S_dot_t;
+        const real prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x +
+            axis_y_prrr_axes3_x*prrr_u_1_t;
+        const real prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x -
+            axis_x_prrr_axes3_x*prrr_u_1_t;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_W_3_t*prrr_platform_joint_offset_x;
         /* (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real prrr_rel_o_x = prrr_u_1_tip_x - prrr_bias_x;
-        const real prrr_rel_o_y = prrr_u_1_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3;
-        /* (prrr-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real prrr_qdd_2_o = inv_prrr_r_2_r0_y*prrr_rel_o_x;
+        const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x;
+        const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
+        /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
+        const real prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
         /* (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real prrr_alpha_3_o_z = inv_prrr_platform_joint_offset_x*(prrr_rel_o_y +
-            prrr_qdd_2_o*prrr_r_2_r0_x) - prrr_qdd_2_o;
+        const real prrr_alpha_3_o_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y +
+            prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
+        /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
+        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
+        const real prrr_g_in_axes2_x = prrr_c_2*prrr_g_in_axes0_x + prrr_g_in_axes0_y*prrr_s_2;
+        const real prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_y - prrr_g_in_axes0_x*prrr_s_2;
+        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
+        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
+        const real prrr_link2_mass = m->prrr_link2_mass[i];
+        const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y +
+            prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - prrr_g_in_axes2_x*prrr_link2_mass;
+        const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
+            prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - prrr_g_in_axes2_y*prrr_link2_mass;
         /* (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_o_x = prrr_u_1_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x;
-        const real prrr_acc_3_o_y = prrr_u_1_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y;
+        const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y -
+            axis_x_prrr_axes3_x*gravity_x;
+        const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y -
+            axis_y_prrr_axes3_x*gravity_x;
         /* (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
-        const real prrr_h_3_x = m->prrr_h_3_x[i];
-        const real prrr_h_3_y = m->prrr_h_3_y[i];
-        const real prrr_mu_3_o_z = prrr_J_3_zz*prrr_alpha_3_o_z + prrr_acc_3_o_y*prrr_h_3_x -
-            prrr_acc_3_o_x*prrr_h_3_y;
-        /* (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
-        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
-        const real prrr_g_r1_x = prrr_c_2*prrr_g_r0_x + prrr_g_r0_y*prrr_s_2;
-        const real prrr_g_r1_y = prrr_c_2*prrr_g_r0_y - prrr_g_r0_x*prrr_s_2;
+        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
+        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
+        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+        const real prrr_mu_3_o_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
+            prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
+            prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y;
         /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real prrr_J_2_zz = m->prrr_J_2_zz[i];
-        const real prrr_h_2_x = m->prrr_h_2_x[i];
-        const real prrr_h_2_y = m->prrr_h_2_y[i];
-        const real prrr_mu_2_o_z = prrr_g_r1_x*prrr_h_2_y - prrr_J_2_zz*prrr_qdd_2_o -
-            prrr_g_r1_y*prrr_h_2_x;
+        const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
+        const real prrr_mu_2_o_in_axes2_z = prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
+            prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
         /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real prrr_N_2_o_z = prrr_mu_2_o_z + prrr_mu_3_o_z;
-        /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real prrr_G_o_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_o_z;
-        const real prrr_G_o_t_2 = inv_prrr_r_2_r0_y*(prrr_G_o_t*prrr_r_2_r0_x - prrr_N_2_o_z);
-        /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real prrr_c_o_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_o_z*prrr_h_3_y -
-            prrr_G_o_t_2;
-        const real prrr_c_o_y = prrr_W_3_t*prrr_h_3_y - prrr_G_o_t - prrr_alpha_3_o_z*prrr_h_3_x;
-        /* (prrr-U) velocity and gravity terms of the leg force */
-        const real prrr_U_in_base_x = -axis_y_prrr_axes3_in_base_x*prrr_c_o_y -
-            axis_y_prrr_axes3_in_base_y*prrr_c_o_x;
-        const real prrr_U_in_base_y = axis_y_prrr_axes3_in_base_x*prrr_c_o_x -
-            axis_y_prrr_axes3_in_base_y*prrr_c_o_y;
-        /* (Z_a) rotational part of Z */
-        const real prrr_Z_a_t = prrr_U_in_base_y*prrr_q_in_base_x -
-            prrr_U_in_base_x*prrr_q_in_base_y;
-        /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_f_2_o_x = prrr_h_2_y*prrr_qdd_2_o - prrr_W_2_t*prrr_h_2_x -
-            prrr_g_r1_x*prrr_link2_mass;
-        const real prrr_f_2_o_y = -prrr_W_2_t*prrr_h_2_y - prrr_g_r1_y*prrr_link2_mass -
-            prrr_h_2_x*prrr_qdd_2_o;
+        const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
         /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
-        const real prrr_f_1_o_x = m->prrr_f_1_o_x[i];
-        const real prrr_T_1_o_x = prrr_c_2*prrr_f_2_o_x - prrr_f_1_o_x - prrr_f_2_o_y*prrr_s_2;
+        const real prrr_f_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i];
+        const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x
+            - prrr_f_2_o_in_axes2_y*prrr_s_2;
+        /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
+        const real prrr_G_o_in_axes3_x =
+            inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x -
+            prrr_N_2_o_in_axes2_z);
+        /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real prrr_c_o_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
+            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x;
+        const real prrr_c_o_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
+            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x;
+        /* (prrr-U) velocity and gravity terms of the leg force */
+        const real prrr_U_x = -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
+            axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
+        const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
+            axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
         /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
            extra freedom of joint 1 */
-        const real prrr_P_1_o_t = axis_y_prrr_axes3_r1_x*prrr_G_o_t +
-            axis_y_prrr_axes3_r1_y*prrr_G_o_t_2;
-        const real prrr_P_1_o = prrr_T_1_o_x - prrr_P_1_o_t;
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_U_in_base_x : prrr_U_in_base_x;  /* total_prrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prrr_U_in_base_y : prrr_U_in_base_y;  /* total_prrr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prrr_Z_a_t : prrr_Z_a_t;  /* total_prrr_z */
+        const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x +
+            prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y;
+        const real prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t;
+        /* (Z_a) rotational part of Z */
+        const real prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_U_x : prrr_U_x;  /* Z_t_prrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prrr_U_y : prrr_U_y;  /* Z_t_prrr_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + prrr_Z_a_t : prrr_Z_a_t;  /* Z_a_prrr_z */
+        /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 1 */
         o[0*count + k] = prrr_P_1_o;
         o[3*count + k] = prrr_P_1_o;
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[2*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[1*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -2765,31 +2830,31 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2799,124 +2864,128 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1_t_3 = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
-        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+            axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+            axis_x_rrr_axes2_x*rrr_u_1_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
-        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+        const real rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
-            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
+            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
-            rrr_acc_2_o_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
-        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
-        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2934,20 +3003,22 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[7*w + k];
-        const real total_prrr_x = sums[0*w + k];
-        const real total_rrr_x = sums[3*w + k];
-        const real Z_t_x = Z_p_x + total_prrr_x + total_rrr_x;
+        const real Z_t_prrr_x = sums[0*w + k];
+        const real Z_t_rrr_x = sums[3*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prrr_x + Z_t_rrr_x;
         const real Z_p_y = s[8*w + k];
-        const real total_prrr_y = sums[1*w + k];
-        const real total_rrr_y = sums[4*w + k];
-        const real Z_t_y = Z_p_y + total_prrr_y + total_rrr_y;
+        const real Z_t_prrr_y = sums[1*w + k];
+        const real Z_t_rrr_y = sums[4*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prrr_y + Z_t_rrr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[9*w + k];
-        const real total_prrr_z = sums[2*w + k];
-        const real total_rrr_z = sums[5*w + k];
-        const real Z_a_z = total_prrr_z + total_rrr_z - Z_q_t;
+        const real Z_a_prrr_z = sums[2*w + k];
+        const real Z_a_rrr_z = sums[5*w + k];
+        const real Z_q_z = s[9*w + k];
+        const real Z_a_z = Z_a_prrr_z + Z_a_rrr_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
         t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
     }
@@ -3022,34 +3093,35 @@ INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -3057,49 +3129,52 @@ INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 -
-            prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t -
+            prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t;
         /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
-        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
-        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_w_2_t = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx);
-        const real prrr_w_2_t_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx);
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
+        const real prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
+        const real prrr_w_2_x = -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x);
+        const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x);
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t;
+        const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = 1;
-        o[1*count + k] = -prrr_w_2_t;
-        o[2*count + k] = prrr_w_2_t_2;
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[1*count + k] = prrr_w_2_x;
+        o[2*count + k] = prrr_w_2_y;
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = prrr_H_a_2_z;
-        o[4*count + k] = prrr_dy_1_qdd_2;
-        o[7*count + k] = (prrr_w_2_t + prrr_w_2_t_2) + (prrr_H_a_2_z + prrr_dy_1_qdd_2);
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[4*count + k] = prrr_w_2_t;
+        o[7*count + k] = (prrr_w_2_x + prrr_w_2_y) + (prrr_H_a_2_z + prrr_w_2_t);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[6*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[5*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -3129,31 +3204,31 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -3163,43 +3238,46 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
+            rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t);
+        const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -3274,13 +3352,13 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real t_ddot_y = A_1;
         const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3288,11 +3366,11 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
-        const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
+        const real f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y;
+        const real f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x;
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y;
+        const real J_star_zz = m->J_star_zz;
+        const real mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -3321,34 +3399,35 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -3356,166 +3435,174 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
-        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
         /* (prrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real prrr_S_dot_t = omega_z*prrr_q_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
+        const real prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
+        const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
+        const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
         const real prrr_yd_1 = V[(3)*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_3) rate of joint 3 */
-        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real prrr_omega_3_z =
-            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
+        /* (prrr-qd_2) rate of joint 2 */
+        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
         /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
+            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
         /* (prrr-W_3) centripetal tensor of link 3 */
-        const real prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_x = -prrr_W_3_t*prrr_platform_joint_offset_x -
-            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
-        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
-        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y;
-        const real prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y;
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t;
+        const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
         /* (prrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y;
+        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x;
+        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x;
         /* (prrr-S_ddot) acceleration of the connection point */
         const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
         const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
-        const real prrr_S_ddot_tip_x = axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y;
-        const real prrr_S_ddot_tip_y = axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y;
+        const real prrr_S_ddot_in_axes3_x = axis_x_prrr_axes3_x*prrr_S_ddot_x -
+            axis_y_prrr_axes3_x*prrr_S_ddot_y;
+        const real prrr_S_ddot_in_axes3_y = axis_x_prrr_axes3_x*prrr_S_ddot_y +
+            axis_y_prrr_axes3_x*prrr_S_ddot_x;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_W_3_t*prrr_platform_joint_offset_x;
         /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
         const real prrr_ydd_1 = A[(3)*w + j];
-        const real prrr_rel_x = prrr_S_ddot_tip_x - prrr_bias_x -
-            axis_y_prrr_axes3_r1_y*prrr_ydd_1;
-        const real prrr_rel_y = prrr_S_ddot_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
-            axis_y_prrr_axes3_r1_x*prrr_ydd_1;
-        /* (prrr-qdd_2) acceleration of joint 2 */
-        const real prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x;
+        const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x -
+            prrr_e_1_in_axes3_x*prrr_ydd_1;
+        const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
+        /* (prrr-B_2) acceleration tensor of link 2 */
+        const real prrr_B_2_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
+        /* (prrr-alpha_3) angular acceleration of link 3 */
+        const real prrr_alpha_3_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
+            prrr_B_2_in_axes2_xy*prrr_r_2_in_axes3_x) - prrr_B_2_in_axes2_xy;
+        /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
+        const real prrr_acc_1_in_axes0_x = prrr_ydd_1 - prrr_g_in_axes0_x;
+        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
+        const real prrr_acc_2_in_axes2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x -
+            prrr_g_in_axes0_y*prrr_s_2;
+        const real prrr_acc_2_in_axes2_y = prrr_g_in_axes0_x*prrr_s_2 - prrr_c_2*prrr_g_in_axes0_y
+            - prrr_s_2*prrr_ydd_1;
+        /* (prrr-f_2) inertia force of link 2 less its weight */
+        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
+        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
+        const real prrr_link2_mass = m->prrr_link2_mass[i];
+        const real prrr_f_2_in_axes2_x = prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_y +
+            prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x + prrr_acc_2_in_axes2_x*prrr_link2_mass;
+        const real prrr_f_2_in_axes2_y = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y +
+            prrr_acc_2_in_axes2_y*prrr_link2_mass - prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_x;
         /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_x = prrr_S_ddot_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x;
-        const real prrr_acc_3_y = prrr_S_ddot_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y;
-        /* (prrr-alpha_3) angular acceleration of link 3 */
-        const real prrr_alpha_3_z = inv_prrr_platform_joint_offset_x*(prrr_rel_y +
-            prrr_qdd_2*prrr_r_2_r0_x) - prrr_qdd_2;
+        const real prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x + axis_y_prrr_axes3_x*gravity_y
+            - axis_x_prrr_axes3_x*gravity_x;
+        const real prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y - axis_x_prrr_axes3_x*gravity_y
+            - axis_y_prrr_axes3_x*gravity_x;
         /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
-        const real prrr_h_3_x = m->prrr_h_3_x[i];
-        const real prrr_h_3_y = m->prrr_h_3_y[i];
-        const real prrr_mu_3_z = prrr_J_3_zz*prrr_alpha_3_z + prrr_acc_3_y*prrr_h_3_x -
-            prrr_acc_3_x*prrr_h_3_y;
-        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
-        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
-        const real prrr_acc_2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_r0_x -
-            prrr_g_r0_y*prrr_s_2;
-        const real prrr_acc_2_y = prrr_g_r0_x*prrr_s_2 - prrr_c_2*prrr_g_r0_y -
-            prrr_s_2*prrr_ydd_1;
+        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
+        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
+        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+        const real prrr_mu_3_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z +
+            prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x - prrr_acc_3_in_axes3_x*prrr_h_3_in_spec3_y;
         /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prrr_J_2_zz = m->prrr_J_2_zz[i];
-        const real prrr_h_2_x = m->prrr_h_2_x[i];
-        const real prrr_h_2_y = m->prrr_h_2_y[i];
-        const real prrr_mu_2_z = prrr_acc_2_y*prrr_h_2_x - prrr_J_2_zz*prrr_qdd_2 -
-            prrr_acc_2_x*prrr_h_2_y;
+        const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
+        const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x -
+            prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y;
         /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real prrr_N_2_z = prrr_mu_2_z + prrr_mu_3_z;
-        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real prrr_G_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_z;
-        const real prrr_G_t_2 = inv_prrr_r_2_r0_y*(prrr_G_t*prrr_r_2_r0_x - prrr_N_2_z);
-        /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real prrr_c_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_z*prrr_h_3_y - prrr_G_t_2;
-        const real prrr_c_y = prrr_W_3_t*prrr_h_3_y - prrr_G_t - prrr_alpha_3_z*prrr_h_3_x;
-        const real prrr_c_in_base_x = axis_y_prrr_axes3_in_base_x*prrr_c_y +
-            axis_y_prrr_axes3_in_base_y*prrr_c_x;
-        const real prrr_c_in_base_y = axis_y_prrr_axes3_in_base_y*prrr_c_y -
-            axis_y_prrr_axes3_in_base_x*prrr_c_x;
-        /* (R_a) moment that actuators and external wrench must give */
-        const real prrr_R_a_t = prrr_c_in_base_y*prrr_q_in_base_x -
-            prrr_c_in_base_x*prrr_q_in_base_y;
-        /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prrr_acc_1_x = prrr_ydd_1 - prrr_g_r0_x;
-        /* (prrr-f_2) inertia force of link 2 less its weight */
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_f_2_x = prrr_acc_2_x*prrr_link2_mass + prrr_h_2_y*prrr_qdd_2 -
-            prrr_W_2_t*prrr_h_2_x;
-        const real prrr_f_2_y = prrr_acc_2_y*prrr_link2_mass - prrr_W_2_t*prrr_h_2_y -
-            prrr_h_2_x*prrr_qdd_2;
+        const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
         /* (prrr-T_1) inertia force of the links from 1 outwards, the last link left out */
         const real prrr_link1_mass = m->prrr_link1_mass[i];
-        const real prrr_T_1_x = prrr_acc_1_x*prrr_link1_mass + prrr_c_2*prrr_f_2_x -
-            prrr_f_2_y*prrr_s_2;
+        const real prrr_T_1_in_axes0_x = prrr_acc_1_in_axes0_x*prrr_link1_mass +
+            prrr_c_2*prrr_f_2_in_axes2_x - prrr_f_2_in_axes2_y*prrr_s_2;
+        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y;
+        const real prrr_G_in_axes3_x =
+            inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z);
+        /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real prrr_c_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
+            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_in_axes3_x;
+        const real prrr_c_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
+            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x;
+        const real prrr_c_x = axis_x_prrr_axes3_x*prrr_c_in_axes3_x +
+            axis_y_prrr_axes3_x*prrr_c_in_axes3_y;
+        const real prrr_c_y = axis_x_prrr_axes3_x*prrr_c_in_axes3_y -
+            axis_y_prrr_axes3_x*prrr_c_in_axes3_x;
         /* (prrr-P_1) inertia and weight of the leg along the extra freedom of joint 1 */
-        const real prrr_P_1_t = axis_y_prrr_axes3_r1_x*prrr_G_t +
-            axis_y_prrr_axes3_r1_y*prrr_G_t_2;
-        const real prrr_P_1 = prrr_T_1_x - prrr_P_1_t;
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_c_in_base_x : prrr_c_in_base_x;  /* total_prrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prrr_c_in_base_y : prrr_c_in_base_y;  /* total_prrr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prrr_R_a_t : prrr_R_a_t;  /* total_prrr_z */
+        const real prrr_P_1_t = prrr_G_in_axes3_x*prrr_e_1_in_axes3_x +
+            prrr_G_in_axes3_y*prrr_e_1_in_axes3_y;
+        const real prrr_P_1 = prrr_T_1_in_axes0_x - prrr_P_1_t;
+        /* (R_a) moment that actuators and external wrench must give */
+        const real prrr_R_a_t = prrr_c_x*prrr_q_y - prrr_c_y*prrr_q_x;
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+        const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_c_x : prrr_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + prrr_c_y : prrr_c_y;  /* R_t_t_2 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + prrr_R_a_t : prrr_R_a_t;  /* R_a_prrr_z */
+        /* (prrr-P_1) inertia and weight of the leg along the extra freedom of joint 1 */
         o[0*count + k] = prrr_P_1;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[1*count + k] = 1;
-        o[2*count + k] = -prrr_w_2_t;
-        o[3*count + k] = prrr_w_2_t_2;
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[2*count + k] = prrr_w_2_x;
+        o[3*count + k] = prrr_w_2_y;
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
         o[4*count + k] = prrr_H_a_2_z;
-        o[5*count + k] = prrr_dy_1_qdd_2;
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[5*count + k] = prrr_w_2_t;
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[7*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[6*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -3546,31 +3633,31 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -3580,132 +3667,138 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
-        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1) acceleration tensor of link 1 */
+        const real rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
         /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
-            rrr_acc_2_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
-        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
-        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
-            axis_y_rrr_axes2_in_base_y*rrr_c_x;
-        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
-            axis_y_rrr_axes2_in_base_x*rrr_c_x;
+        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
+            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
+        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
+            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* total_rrr_z */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_x : rrr_c_x;  /* R_t_t_3 */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_y : rrr_c_y;  /* R_t_t_4 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* R_a_rrr_z */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -3726,21 +3819,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
+        const real R_t_t_3 = sums[3*w + k];
         const real f_p_x = s[10*w + k];
-        const real total_prrr_x = sums[0*w + k];
-        const real total_rrr_x = sums[3*w + k];
-        const real R_t_x = f_p_x - total_prrr_x - total_rrr_x;
+        const real R_t_x = f_p_x - R_t_t - R_t_t_3;
+        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_t_4 = sums[4*w + k];
         const real f_p_y = s[11*w + k];
-        const real total_prrr_y = sums[1*w + k];
-        const real total_rrr_y = sums[4*w + k];
-        const real R_t_y = f_p_y - total_prrr_y - total_rrr_y;
+        const real R_t_y = f_p_y - R_t_t_2 - R_t_t_4;
         /* (R_a) moment that actuators and external wrench must give */
+        const real R_a_prrr_z = sums[2*w + k];
+        const real R_a_rrr_z = sums[5*w + k];
         const real mu_p_z = s[12*w + k];
-        const real total_prrr_z = sums[2*w + k];
-        const real total_rrr_z = sums[5*w + k];
-        const real R_a_z = mu_p_z - total_prrr_z - total_rrr_z;
+        const real R_a_z = R_a_prrr_z + R_a_rrr_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
+        /* (R_a) moment that actuators and external wrench must give */
         required[2*w + k] = R_a_z;
     }
 }
@@ -3828,24 +3923,25 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t leg
             prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -3853,23 +3949,25 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t leg
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         /* (prrr-q_2) displacement of joint 2 */
+        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_q_2 = angle(inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2),
             -inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2));
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
         /* (prrr-q_3) displacement of joint 3 */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
         const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
         const real prrr_q_3 =
-            angle(-inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2,
-            inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x);
+            angle(-inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2,
+            inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x);
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = prrr_y_1_extra;
+        /* (prrr-q_2) displacement of joint 2 */
         o[1*count + k] = prrr_q_2;
+        /* (prrr-q_3) displacement of joint 3 */
         o[2*count + k] = prrr_q_3;
         o[5*count + k] = prrr_y_1_extra + (prrr_q_2 + prrr_q_3);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
@@ -3912,21 +4010,21 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg,
             rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -3936,22 +4034,23 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg,
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         /* (rrr-q_1) displacement of joint 1 */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
             inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
         /* (rrr-q_2) displacement of joint 2 */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+        /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
+        /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
@@ -4040,34 +4139,35 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -4075,59 +4175,62 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
-        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
         /* (prrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real prrr_S_dot_x = t_dot_x - omega_z*prrr_q_in_base_y;
+        const real prrr_S_dot_x = t_dot_x - omega_z*prrr_q_y;
         const real t_dot_y = s[5*w + j];
-        const real prrr_S_dot_y = t_dot_y + omega_z*prrr_q_in_base_x;
+        const real prrr_S_dot_y = t_dot_y + omega_z*prrr_q_x;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
         const real prrr_yd_1 = V[(3)*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        /* (prrr-qd_2) rate of joint 2 */
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real prrr_qd_2 = -(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)/prrr_r_2_in_axes3_y;
         /* (prrr-qd_3) rate of joint 3 */
-        const real prrr_qd_2 = (axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)/prrr_r_2_r0_y;
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real prrr_qd_3 =
-            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*(prrr_c_3*prrr_r_2_x +
-            prrr_r_2_t*prrr_s_3));
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+        const real prrr_qd_3 = prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*(prrr_c_3*prrr_r_2_in_axes2_x +
+            prrr_r_2_t*prrr_s_3_t));
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = prrr_yd_1;
-        o[1*count + k] = -prrr_qd_2;
+        /* (prrr-qd_2) rate of joint 2 */
+        o[1*count + k] = prrr_qd_2;
+        /* (prrr-qd_3) rate of joint 3 */
         o[2*count + k] = prrr_qd_3;
         o[5*count + k] = prrr_yd_1 + (prrr_qd_2 + prrr_qd_3);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[4*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[3*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -4156,31 +4259,31 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4190,54 +4293,55 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y;
         const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1_t_3 = (axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y;
         /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y;
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_qd_2 =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
-            rrr_r_1_t*rrr_s_2));
-        o[0*count + k] = -rrr_qd_1;
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x +
+            rrr_r_1_in_axes1_y*rrr_s_2));
+        /* (rrr-qd_1) rate of joint 1 */
+        o[0*count + k] = -rrr_qd_1_t_3;
+        /* (rrr-qd_2) rate of joint 2 */
         o[1*count + k] = rrr_qd_2;
-        o[4*count + k] = rrr_qd_1 + rrr_qd_2;
+        o[4*count + k] = rrr_qd_1_t_3 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -4335,34 +4439,35 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t le
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -4370,88 +4475,93 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t le
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
-        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
         /* (prrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real prrr_S_dot_t = omega_z*prrr_q_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
         const real prrr_yd_1 = V[(3)*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_3) rate of joint 3 */
-        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real prrr_omega_3_z =
-            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
+        /* (prrr-qd_2) rate of joint 2 */
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
         /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_x = -prrr_omega_3_z*prrr_omega_3_z*prrr_platform_joint_offset_x -
-            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
+        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
+            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
         /* (prrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y;
+        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x;
+        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x;
         /* (prrr-S_ddot) acceleration of the connection point */
         const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
         const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x;
         /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
         const real prrr_ydd_1 = A[(3)*w + j];
-        const real prrr_rel_x = axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x - prrr_bias_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y - axis_y_prrr_axes3_r1_y*prrr_ydd_1;
-        const real prrr_rel_y = axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
-            axis_y_prrr_axes3_r1_x*prrr_ydd_1;
+        const real prrr_rel_in_axes3_x = axis_x_prrr_axes3_x*prrr_S_ddot_x - prrr_bias_in_axes3_x
+            - axis_y_prrr_axes3_x*prrr_S_ddot_y - prrr_e_1_in_axes3_x*prrr_ydd_1;
+        const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*prrr_S_ddot_y +
+            axis_y_prrr_axes3_x*prrr_S_ddot_x - prrr_e_1_in_axes3_y*prrr_ydd_1 -
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
         /* (prrr-qdd_2) acceleration of joint 2 */
-        const real prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x;
-        const real prrr_qdd_3 = inv_prrr_platform_joint_offset_x*(prrr_rel_y +
-            prrr_qdd_2*prrr_r_2_r0_x);
+        const real prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
+        /* (prrr-qdd_3) acceleration of joint 3 */
+        const real prrr_qdd_3 = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
+            prrr_qdd_2_t*prrr_r_2_in_axes3_x);
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = prrr_ydd_1;
-        o[1*count + k] = -prrr_qdd_2;
+        /* (prrr-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = -prrr_qdd_2_t;
+        /* (prrr-qdd_3) acceleration of joint 3 */
         o[2*count + k] = prrr_qdd_3;
-        o[5*count + k] = prrr_ydd_1 + (prrr_qdd_2 + prrr_qdd_3);
+        o[5*count + k] = prrr_ydd_1 + (prrr_qdd_2_t + prrr_qdd_3);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[4*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[3*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -4480,31 +4590,31 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4514,81 +4624,84 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1_t_3 = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x =
+            -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
-        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x);
-        o[0*count + k] = -rrr_qdd_1;
+        const real rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+        /* (rrr-qdd_2) acceleration of joint 2 */
+        const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = -rrr_qdd_1_t;
+        /* (rrr-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rrr_qdd_2;
-        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -4685,34 +4798,35 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -4720,142 +4834,148 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3;
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real axis_y_prrr_axes3_in_base_x = axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx;
-        const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
-        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
         /* (prrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_in_base_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x;
+        const real prrr_S_dot_t = omega_z*prrr_q_y;
+        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        /* (prrr-w_2) reciprocal vector 1 */
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
+        const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
+        const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
         const real prrr_yd_1 = V[(3)*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_3) rate of joint 3 */
-        const real prrr_qd_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y);
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
-        const real prrr_omega_3_z =
-            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2;
+        /* (prrr-qd_2) rate of joint 2 */
+        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
         /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_t = prrr_qd_2*prrr_qd_2;
+        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+        /* (prrr-omega_3) angular velocity of link 3 */
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
+            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
         /* (prrr-W_3) centripetal tensor of link 3 */
-        const real prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_x = -prrr_W_3_t*prrr_platform_joint_offset_x -
-            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y;
-        const real prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y;
+        const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
         /* (prrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y;
+        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x;
+        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x;
         /* (prrr-S_ddot) acceleration of the connection point */
         const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
         const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
-        const real prrr_S_ddot_tip_x = axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y;
-        const real prrr_S_ddot_tip_y = axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y;
+        const real prrr_S_ddot_in_axes3_x = axis_x_prrr_axes3_x*prrr_S_ddot_x -
+            axis_y_prrr_axes3_x*prrr_S_ddot_y;
+        const real prrr_S_ddot_in_axes3_y = axis_x_prrr_axes3_x*prrr_S_ddot_y +
+            axis_y_prrr_axes3_x*prrr_S_ddot_x;
+        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_W_3_t*prrr_platform_joint_offset_x;
         /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
         const real prrr_ydd_1 = A[(3)*w + j];
-        const real prrr_rel_x = prrr_S_ddot_tip_x - prrr_bias_x -
-            axis_y_prrr_axes3_r1_y*prrr_ydd_1;
-        const real prrr_rel_y = prrr_S_ddot_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
-            axis_y_prrr_axes3_r1_x*prrr_ydd_1;
-        /* (prrr-qdd_2) acceleration of joint 2 */
-        const real prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x;
+        const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x -
+            prrr_e_1_in_axes3_x*prrr_ydd_1;
+        const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
+        /* (prrr-B_2) acceleration tensor of link 2 */
+        const real prrr_B_2_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
+        /* (prrr-alpha_3) angular acceleration of link 3 */
+        const real prrr_alpha_3_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
+            prrr_B_2_in_axes2_xy*prrr_r_2_in_axes3_x) - prrr_B_2_in_axes2_xy;
+        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
+        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
+        const real prrr_acc_2_in_axes2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x -
+            prrr_g_in_axes0_y*prrr_s_2;
+        const real prrr_acc_2_in_axes2_y = prrr_g_in_axes0_x*prrr_s_2 - prrr_c_2*prrr_g_in_axes0_y
+            - prrr_s_2*prrr_ydd_1;
         /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_x = prrr_S_ddot_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x;
-        const real prrr_acc_3_y = prrr_S_ddot_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y;
-        /* (prrr-alpha_3) angular acceleration of link 3 */
-        const real prrr_alpha_3_z = inv_prrr_platform_joint_offset_x*(prrr_rel_y +
-            prrr_qdd_2*prrr_r_2_r0_x) - prrr_qdd_2;
+        const real prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x + axis_y_prrr_axes3_x*gravity_y
+            - axis_x_prrr_axes3_x*gravity_x;
+        const real prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y - axis_x_prrr_axes3_x*gravity_y
+            - axis_y_prrr_axes3_x*gravity_x;
         /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real prrr_J_3_zz = m->prrr_J_3_zz[i];
-        const real prrr_h_3_x = m->prrr_h_3_x[i];
-        const real prrr_h_3_y = m->prrr_h_3_y[i];
-        const real prrr_mu_3_z = prrr_J_3_zz*prrr_alpha_3_z + prrr_acc_3_y*prrr_h_3_x -
-            prrr_acc_3_x*prrr_h_3_y;
-        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
-        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
-        const real prrr_acc_2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_r0_x -
-            prrr_g_r0_y*prrr_s_2;
-        const real prrr_acc_2_y = prrr_g_r0_x*prrr_s_2 - prrr_c_2*prrr_g_r0_y -
-            prrr_s_2*prrr_ydd_1;
+        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
+        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
+        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+        const real prrr_mu_3_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z +
+            prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x - prrr_acc_3_in_axes3_x*prrr_h_3_in_spec3_y;
         /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prrr_J_2_zz = m->prrr_J_2_zz[i];
-        const real prrr_h_2_x = m->prrr_h_2_x[i];
-        const real prrr_h_2_y = m->prrr_h_2_y[i];
-        const real prrr_mu_2_z = prrr_acc_2_y*prrr_h_2_x - prrr_J_2_zz*prrr_qdd_2 -
-            prrr_acc_2_x*prrr_h_2_y;
+        const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
+        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
+        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
+        const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x -
+            prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y;
         /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real prrr_N_2_z = prrr_mu_2_z + prrr_mu_3_z;
+        const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real prrr_G_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_z;
+        const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y;
         /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prrr_c_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_z*prrr_h_3_y -
-            inv_prrr_r_2_r0_y*(prrr_G_t*prrr_r_2_r0_x - prrr_N_2_z);
-        const real prrr_c_y = prrr_W_3_t*prrr_h_3_y - prrr_G_t - prrr_alpha_3_z*prrr_h_3_x;
+        const real prrr_c_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
+            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y -
+            inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z);
+        const real prrr_c_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
+            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x;
         /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real prrr_link3_mass = m->prrr_link3_mass[i];
-        const real prrr_c_true_x = prrr_c_x - prrr_acc_3_x*prrr_link3_mass;
-        const real prrr_c_true_y = prrr_c_y - prrr_acc_3_y*prrr_link3_mass;
-        const real prrr_c_true_in_base_x = axis_y_prrr_axes3_in_base_x*prrr_c_true_y +
-            axis_y_prrr_axes3_in_base_y*prrr_c_true_x;
-        const real prrr_c_true_in_base_y = axis_y_prrr_axes3_in_base_y*prrr_c_true_y -
-            axis_y_prrr_axes3_in_base_x*prrr_c_true_x;
-        o[0*count + k] = prrr_c_true_in_base_x;
-        o[1*count + k] = prrr_c_true_in_base_y;
-        o[2*count + k] = -prrr_w_2_t;
-        o[3*count + k] = prrr_w_2_t_2;
+        const real prrr_c_true_in_axes3_x = prrr_c_in_axes3_x -
+            prrr_acc_3_in_axes3_x*prrr_link3_mass;
+        const real prrr_c_true_in_axes3_y = prrr_c_in_axes3_y -
+            prrr_acc_3_in_axes3_y*prrr_link3_mass;
+        const real prrr_c_true_x = axis_x_prrr_axes3_x*prrr_c_true_in_axes3_x +
+            axis_y_prrr_axes3_x*prrr_c_true_in_axes3_y;
+        const real prrr_c_true_y = axis_x_prrr_axes3_x*prrr_c_true_in_axes3_y -
+            axis_y_prrr_axes3_x*prrr_c_true_in_axes3_x;
+        /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = prrr_c_true_x;
+        o[1*count + k] = prrr_c_true_y;
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[2*count + k] = prrr_w_2_x;
+        o[3*count + k] = prrr_w_2_y;
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[5*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[4*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -4884,31 +5004,31 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4918,130 +5038,134 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
+        /* (rrr-W_1) centripetal tensor of link 1 */
+        const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
+        /* (rrr-W_2) centripetal tensor of link 2 */
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
-        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1) acceleration tensor of link 1 */
+        const real rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
         /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
-            rrr_acc_2_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
-        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
-        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
-        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
-            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
-        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
-            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
-        o[0*count + k] = rrr_c_true_in_base_x;
-        o[1*count + k] = rrr_c_true_in_base_y;
-        o[2*count + k] = -rrr_w_1_t;
-        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rrr_c_true_x;
+        o[1*count + k] = rrr_c_true_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[2*count + k] = rrr_w_1_x;
+        o[3*count + k] = rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -5091,11 +5215,12 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
-            gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x -
+            R_yx*h_star_in_platform_y) + gravity_y*(R_xx*h_star_in_platform_y +
+            R_yx*h_star_in_platform_x + m_star*t_y);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -5125,24 +5250,25 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
             prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -5150,47 +5276,50 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
         /* (potential) potential energy */
-        const real prrr_b_r0_x = m->prrr_b_r0_x[i];
-        const real prrr_potential_t_3 = prrr_b_r0_x + prrr_y_1_extra;
-        /* (prrr-h_3) first moment of link 3 about the connection point */
-        const real prrr_h_3_x = m->prrr_h_3_x[i];
-        const real prrr_h_3_y = m->prrr_h_3_y[i];
-        const real prrr_h_3_r0_x = prrr_c_3*prrr_h_3_x + prrr_h_3_y*prrr_s_3;
-        const real prrr_h_3_r0_y = prrr_c_3*prrr_h_3_y - prrr_h_3_x*prrr_s_3;
-        /* (potential) potential energy */
-        const real prrr_g_r0_x = m->prrr_g_r0_x[i];
-        const real prrr_g_r0_y = m->prrr_g_r0_y[i];
-        const real prrr_h_1_x = m->prrr_h_1_x[i];
-        const real prrr_h_1_y = m->prrr_h_1_y[i];
-        const real prrr_h_2_x = m->prrr_h_2_x[i];
-        const real prrr_h_2_y = m->prrr_h_2_y[i];
+        const real prrr_b_in_axes0_x = m->prrr_b_in_axes0_x[i];
+        const real prrr_potential_t_3 = prrr_b_in_axes0_x + prrr_y_1_extra;
+        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
+        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+        const real prrr_potential_t_4 = prrr_c_3*prrr_h_3_in_spec3_x +
+            prrr_h_3_in_spec3_y*prrr_s_3_t;
+        const real prrr_potential_t_5 = prrr_c_3*prrr_h_3_in_spec3_y -
+            prrr_h_3_in_spec3_x*prrr_s_3_t;
+        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
+        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
+        const real prrr_h_1_in_spec0_x = m->prrr_h_1_in_spec0_x[i];
+        const real prrr_h_1_in_spec0_y = m->prrr_h_1_in_spec0_y[i];
+        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
+        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
         const real prrr_link1_mass = m->prrr_link1_mass[i];
         const real prrr_link2_mass = m->prrr_link2_mass[i];
         const real prrr_potential_t = m->prrr_potential_t[i];
         const real prrr_potential_t_2 = m->prrr_potential_t_2[i];
-        const real prrr_potential_t_4 = prrr_g_r0_x*(prrr_h_1_y + prrr_c_2*prrr_h_2_x +
-            prrr_c_2*prrr_h_3_r0_x + prrr_link1_mass*prrr_potential_t_3 +
-            prrr_link2_mass*prrr_potential_t_3 - prrr_h_2_y*prrr_s_2 - prrr_h_3_r0_y*prrr_s_2) +
-            prrr_g_r0_y*(prrr_potential_t + prrr_potential_t_2 + prrr_c_2*prrr_h_2_y +
-            prrr_c_2*prrr_h_3_r0_y + prrr_h_2_x*prrr_s_2 + prrr_h_3_r0_x*prrr_s_2 - prrr_h_1_x);
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_potential_t_4 : prrr_potential_t_4;  /* total_prrr */
+        const real prrr_potential_t_6 = prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y +
+            prrr_c_2*prrr_h_2_in_spec2_x + prrr_c_2*prrr_potential_t_4 +
+            prrr_link1_mass*prrr_potential_t_3 + prrr_link2_mass*prrr_potential_t_3 -
+            prrr_h_2_in_spec2_y*prrr_s_2 - prrr_potential_t_5*prrr_s_2) +
+            prrr_g_in_axes0_y*(prrr_potential_t + prrr_potential_t_2 +
+            prrr_c_2*prrr_h_2_in_spec2_y + prrr_c_2*prrr_potential_t_5 +
+            prrr_h_2_in_spec2_x*prrr_s_2 + prrr_potential_t_4*prrr_s_2 - prrr_h_1_in_spec0_x);
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + -prrr_potential_t_6 : -prrr_potential_t_6;  /* potential_prrr */
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         o[1*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
         o[0*count + k] = UNLESS(prrr_disc_2 >= 0);
@@ -5226,21 +5355,21 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
             rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -5250,38 +5379,41 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (potential) potential energy */
-        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
-        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
-            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
-            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
-            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
-            rrr_h_2_x*rrr_s_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_potential_t = m->rrr_potential_t[i];
+        const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
+        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t_3 : rrr_potential_t_3;  /* potential_t_2 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
@@ -5300,10 +5432,11 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_prrr = sums[0*w + k];
         const real potential_t = s[4*w + k];
-        const real total_prrr = sums[0*w + k];
-        const real total_rrr = sums[1*w + k];
-        const real potential_ = -potential_t - total_prrr - total_rrr;
+        const real potential_t_2 = sums[1*w + k];
+        const real potential_ = potential_prrr - potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5347,6 +5480,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -5364,34 +5498,35 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         const real R_yx = s[3*w + j];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x;
+        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y;
+        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
         const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
         const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
         /* (prrr-x_2) from the origin of joint 2 to the connection point */
         const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_y_1_extra = X[(3)*w + j];
-        const real prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy -
-            prrr_y_1_extra;
+        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+            - prrr_y_1_extra;
         /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x;
+        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
         const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2_t_4 = m->prrr_Kd_2_t_4[i];
-        const real prrr_Kd_2 = R(0.5)*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4;
+        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
         /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x;
+        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
         /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x;
+        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
         /* (prrr-rho2_2) squared amplitude */
         const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
         /* (prrr-disc_2) discriminant */
@@ -5399,70 +5534,74 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         /* (prrr-root_2) root, with the sign of the branch */
         const real prrr_branch_2 = m->prrr_branch_2[i];
         const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_Kd_2_t = m->inv_prrr_Kd_2_t[i];
-        const real prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_Kd_2_t_7 = m->inv_prrr_Kd_2_t_7[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3 =
-            inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 -
-            prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3;
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
         const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
+        /* (prrr-x_3) from the origin of joint 3 to the connection point */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real prrr_s_3_t =
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        /* (prrr-r_2) from joint 2 to the connection point, along the links */
+        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+            prrr_c_3*prrr_platform_joint_offset_x;
+        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t -
+            prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t;
         /* (prrr-w_2) reciprocal vector 1 */
-        const real axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2;
-        const real axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3;
-        const real inv_prrr_r_2_r0_y = 1/prrr_r_2_r0_y;
-        /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
-        const real prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_w_2_t = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx);
-        const real prrr_w_2_t_2 = inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx);
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real prrr_spread_t = b_c_x - prrr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real prrr_spread_t_2 = b_c_y - prrr_platform_point_y;
-        const real prrr_spread_t_3 = prrr_spread_t*prrr_spread_t +
-            prrr_spread_t_2*prrr_spread_t_2;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_pivot_size = magnitude(prrr_rho2_2);
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_pivot_size_2 = magnitude(prrr_r_2_r0_y);
+        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
+        const real prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
+        const real prrr_w_2_x = -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x);
+        const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x);
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_prrr_rho2_2_t_4 = m->inv_prrr_rho2_2_t_4[i];
+        const real prrr_pivot_size = magnitude(prrr_rho2_2);
+        const real prrr_pivot_size_2 = magnitude(prrr_r_2_in_axes3_y);
+        const real inv_prrr_rho2_2_t = m->inv_prrr_rho2_2_t[i];
         const real inv_prrr_size = m->inv_prrr_size[i];
-        const real prrr_least_pivots = lesser(root(inv_prrr_rho2_2_t_4*prrr_pivot_size),
+        const real prrr_least_pivots = lesser(root(inv_prrr_rho2_2_t*prrr_pivot_size),
             inv_prrr_size*prrr_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + prrr_spread_t_3 : prrr_spread_t_3;  /* total_prrr */
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+        const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real prrr_spread_t = b_c_in_platform_x - prrr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real prrr_spread_t_2 = b_c_in_platform_y - prrr_platform_point_y;
+        const real prrr_spread_t_3 = prrr_spread_t*prrr_spread_t +
+            prrr_spread_t_2*prrr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + prrr_spread_t_3 : prrr_spread_t_3;  /* spread_prrr */
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = 1;
-        o[1*count + k] = -prrr_w_2_t;
-        o[2*count + k] = prrr_w_2_t_2;
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[1*count + k] = prrr_w_2_x;
+        o[2*count + k] = prrr_w_2_y;
+        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = prrr_H_a_2_z;
-        o[4*count + k] = prrr_dy_1_qdd_2;
+        /* (prrr-w_2) reciprocal vector 1 */
+        o[4*count + k] = prrr_w_2_t;
+        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[5*count + k] = prrr_least_pivots;
         o[6*count + k] = prrr_disc_2;
-        o[9*count + k] = (prrr_w_2_t + (prrr_w_2_t_2 + prrr_H_a_2_z)) + (prrr_dy_1_qdd_2 +
+        o[9*count + k] = (prrr_w_2_x + (prrr_w_2_y + prrr_H_a_2_z)) + (prrr_w_2_t +
             (prrr_least_pivots + prrr_disc_2));
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
         o[8*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(-prrr_r_2_r0_y) > TOLERANCE*prrr_size);
+            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
         o[7*count + k] = UNLESS(prrr_disc_2 >= 0);
     }
 }
@@ -5495,31 +5634,31 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -5529,63 +5668,67 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
+            rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
-        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t);
+        const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
-        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* spread_rrr */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = rrr_least_pivots;
         o[4*count + k] = rrr_disc_1;
-        o[7*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_H_a_1_z + (rrr_least_pivots +
+        o[7*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_H_a_1_z + (rrr_least_pivots +
             rrr_disc_1));
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -5609,10 +5752,11 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
-        const real total_prrr = sums[0*w + k];
-        const real total_rrr = sums[1*w + k];
-        const real spread_ = root(R(0.3333333333333333)*total_prrr +
-            R(0.3333333333333333)*total_rrr);
+        const real spread_prrr = sums[0*w + k];
+        const real spread_rrr = sums[1*w + k];
+        const real spread_ = root(R(0.3333333333333333)*spread_prrr +
+            R(0.3333333333333333)*spread_rrr);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -124,30 +124,34 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 1 legs of type prrr */
-    planar_redundant_real inv_prrr_Kd_2_t[1], inv_prrr_Kd_2_t_7[1],
-            inv_prrr_platform_joint_offset_x[1], inv_prrr_rho2_2_t_4[1], inv_prrr_size[1],
-            prrr_J_2_zz[1], prrr_J_3_zz[1], prrr_Jc_2_zz[1], prrr_Kd_2_t_2[1], prrr_Kd_2_t_4[1],
-            prrr_P_c_1_t[1], prrr_b_r0_x[1], prrr_base_frame_xx[1], prrr_base_frame_xy[1],
-            prrr_base_frame_yx[1], prrr_base_frame_yy[1], prrr_base_point_x[1], prrr_base_point_y[1],
-            prrr_branch_2[1], prrr_d_G_t[1], prrr_d_Gamma_3_t[1], prrr_d_Gamma_3_y[1], prrr_d_c_yy[1],
-            prrr_d_phi_3_t[1], prrr_f_1_o_x[1], prrr_g_r0_x[1], prrr_g_r0_y[1], prrr_h_1_x[1],
-            prrr_h_1_y[1], prrr_h_2_x[1], prrr_h_2_y[1], prrr_h_3_x[1], prrr_h_3_y[1],
-            prrr_joint3_offset_x[1], prrr_link1_mass[1], prrr_link2_mass[1], prrr_link3_mass[1],
+    planar_redundant_real inv_prrr_rho2_2_t[1], inv_prrr_size[1], inv_prrr_size_t[1],
+            inv_prrr_size_t_2[1], prrr_J_2_in_spec2_zz[1], prrr_J_3_in_spec3_zz[1],
+            prrr_Jc_2_in_axes2_zz[1], prrr_Kd_2_t[1], prrr_Kd_2_t_2[1], prrr_P_c_1_in_axes0_x[1],
+            prrr_b_in_axes0_x[1], prrr_base_frame_xx[1], prrr_base_frame_xy[1], prrr_base_frame_yx[1],
+            prrr_base_frame_yy[1], prrr_base_point_x[1], prrr_base_point_y[1], prrr_branch_2[1],
+            prrr_d_G_in_axes3_yy[1], prrr_d_Gamma_3_in_axes3_y[1], prrr_d_Gamma_3_t[1],
+            prrr_d_c_in_axes3_yy[1], prrr_d_phi_3_t[1], prrr_f_1_o_in_axes0_x[1],
+            prrr_g_in_axes0_x[1], prrr_g_in_axes0_y[1], prrr_h_1_in_spec0_x[1],
+            prrr_h_1_in_spec0_y[1], prrr_h_2_in_spec2_x[1], prrr_h_2_in_spec2_y[1],
+            prrr_h_3_in_spec3_x[1], prrr_h_3_in_spec3_y[1], prrr_joint3_offset_x[1],
+            prrr_link1_mass[1], prrr_link2_mass[1], prrr_link3_mass[1],
             prrr_platform_joint_offset_x[1], prrr_platform_point_x[1], prrr_platform_point_y[1],
-            prrr_potential_t[1], prrr_potential_t_2[1], prrr_rho2_2_t[1], prrr_size[1];
+            prrr_potential_t[1], prrr_potential_t_2[1], prrr_rho2_2_t[1], prrr_size[1],
+            prrr_w_3_in_axes3_y[1];
     /* 2 legs of type rrr */
-    planar_redundant_real inv_rrr_Kd_1_t_5[2], inv_rrr_Kd_1_t_7[2],
-            inv_rrr_platform_joint_offset_x[2], inv_rrr_rho2_1_t_4[2], inv_rrr_size[2], rrr_J_1_zz[2],
-            rrr_J_2_zz[2], rrr_Jc_1_zz[2], rrr_Kd_1_t_2[2], rrr_Kd_1_t_4[2], rrr_b_r0_x[2],
-            rrr_b_r0_y[2], rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2],
-            rrr_base_frame_yy[2], rrr_base_point_x[2], rrr_base_point_y[2], rrr_branch_1[2],
-            rrr_d_Gamma_2_t[2], rrr_d_Gamma_2_y[2], rrr_d_c_yy[2], rrr_d_phi_2_t[2], rrr_g_r0_x[2],
-            rrr_g_r0_y[2], rrr_h_1_x[2], rrr_h_1_y[2], rrr_h_2_x[2], rrr_h_2_y[2],
-            rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2],
-            rrr_platform_joint_offset_x[2], rrr_platform_point_x[2], rrr_platform_point_y[2],
-            rrr_rho2_1_t[2], rrr_size[2];
-    planar_redundant_real J_star_t_6, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
-            h_star_y, legs_size, m_star;
+    planar_redundant_real inv_rrr_rho2_1_t[2], inv_rrr_size[2], inv_rrr_size_t[2],
+            inv_rrr_size_t_2[2], rrr_J_1_in_spec1_zz[2], rrr_J_2_in_spec2_zz[2],
+            rrr_Jc_1_in_axes1_zz[2], rrr_Kd_1_t[2], rrr_Kd_1_t_2[2], rrr_base_frame_xx[2],
+            rrr_base_frame_xy[2], rrr_base_frame_yx[2], rrr_base_frame_yy[2], rrr_base_point_x[2],
+            rrr_base_point_y[2], rrr_branch_1[2], rrr_d_Gamma_2_in_axes2_y[2], rrr_d_Gamma_2_t[2],
+            rrr_d_c_in_axes2_yy[2], rrr_d_phi_2_in_axes2_xy[2], rrr_h_1_in_spec1_x[2],
+            rrr_h_1_in_spec1_y[2], rrr_h_2_in_spec2_x[2], rrr_h_2_in_spec2_y[2],
+            rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2], rrr_mu_1_t[2],
+            rrr_mu_1_t_2[2], rrr_platform_joint_offset_x[2], rrr_platform_point_x[2],
+            rrr_platform_point_y[2], rrr_potential_t[2], rrr_potential_t_2[2], rrr_rho2_1_t[2],
+            rrr_size[2], rrr_w_2_in_axes2_y[2];
+    planar_redundant_real J_star_zz, Z_p_t, Z_p_t_2, b_c_in_platform_x, b_c_in_platform_y, gravity_x,
+            gravity_y, h_star_in_platform_x, h_star_in_platform_y, legs_size, m_star;
 } planar_redundant_model;
 
 extern const planar_redundant_params planar_redundant_default_params;

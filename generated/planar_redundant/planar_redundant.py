@@ -443,7 +443,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -624,49 +624,67 @@ def _prepare(p):
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    prrr_Kd_2_t = prrr_joint3_offset_x*prrr_joint3_offset_x
-    prrr_Kd_2_t_2 = 0.5*prrr_Kd_2_t
-    prrr_Kd_2_t_3 = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x
-    prrr_Kd_2_t_4 = 0.5*prrr_Kd_2_t_3
     # (prrr-size) length of the leg's lever arms, the measure of what is near singular
-    prrr_size_t = 4.58151643161e-07 + prrr_Kd_2_t + prrr_Kd_2_t_3
-    prrr_size = sqrt(prrr_size_t)
-    # (prrr-rho2_2) squared amplitude
-    prrr_rho2_2_t = prrr_size*prrr_size*prrr_size_t
-    # (prrr-xi_2) the vector from joint 2 to the connection point, resolved along link 2
-    inv_prrr_Kd_2_t = 1.0/prrr_Kd_2_t
-    # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-    inv_prrr_Kd_2_t_7 = 1.0/prrr_Kd_2_t_3
-    # (prrr-rho_tip_3) connection point to the centre of mass of link 3
-    prrr_rho_tip_3_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x
-    # (prrr-h_3) first moment of link 3 about the connection point
-    prrr_h_3_x = prrr_link3_mass*prrr_rho_tip_3_x
-    prrr_h_3_y = prrr_link3_centre_of_mass_y*prrr_link3_mass
-    # (prrr-w_3) reciprocal vector 2
-    inv_prrr_platform_joint_offset_x = 1.0/prrr_platform_joint_offset_x
-    # (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    prrr_d_phi_3_t = inv_prrr_platform_joint_offset_x*prrr_h_3_y
-    # (prrr-J_3) inertia tensor of link 3 about the connection point
-    prrr_J_3_t = (
-    prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y + prrr_rho_tip_3_x*prrr_rho_tip_3_x
-    )
-    prrr_J_3_zz = prrr_link3_inertia_zz + prrr_J_3_t*prrr_link3_mass
-    # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    prrr_d_Gamma_3_t = inv_prrr_platform_joint_offset_x*prrr_J_3_zz
-    prrr_d_Gamma_3_y = prrr_d_Gamma_3_t + prrr_h_3_x
+    prrr_size_t = prrr_joint3_offset_x*prrr_joint3_offset_x
+    prrr_size_t_2 = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x
+    prrr_size_t_3 = 4.58151643161e-07 + prrr_size_t + prrr_size_t_2
+    prrr_size = sqrt(prrr_size_t_3)
+    # (prrr-h_1) first moment of link 1 about the origin of link 1
+    prrr_h_1_in_spec0_x = prrr_link1_centre_of_mass_x*prrr_link1_mass
+    prrr_h_1_in_spec0_y = prrr_link1_centre_of_mass_y*prrr_link1_mass
+    # (prrr-h_2) first moment of link 2 about the origin of link 2
+    prrr_h_2_in_spec2_x = prrr_link2_centre_of_mass_x*prrr_link2_mass
+    prrr_h_2_in_spec2_y = prrr_link2_centre_of_mass_y*prrr_link2_mass
     # (prrr-J_2) inertia tensor of link 2 about the origin of link 2
     prrr_J_2_t = (
     prrr_link2_centre_of_mass_x*prrr_link2_centre_of_mass_x +
         prrr_link2_centre_of_mass_y*prrr_link2_centre_of_mass_y
     )
-    prrr_J_2_zz = prrr_link2_inertia_zz + prrr_J_2_t*prrr_link2_mass
+    prrr_J_2_in_spec2_zz = prrr_link2_inertia_zz + prrr_J_2_t*prrr_link2_mass
+    # (prrr-rho_tip_3) connection point to the centre of mass of link 3
+    prrr_rho_tip_3_in_spec3_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x
+    # (prrr-h_3) first moment of link 3 about the connection point
+    prrr_h_3_in_spec3_x = prrr_link3_mass*prrr_rho_tip_3_in_spec3_x
+    prrr_h_3_in_spec3_y = prrr_link3_centre_of_mass_y*prrr_link3_mass
+    # (prrr-J_3) inertia tensor of link 3 about the connection point
+    prrr_J_3_t = (
+    prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y +
+        prrr_rho_tip_3_in_spec3_x*prrr_rho_tip_3_in_spec3_x
+    )
+    prrr_J_3_in_spec3_zz = prrr_link3_inertia_zz + prrr_J_3_t*prrr_link3_mass
+    # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    prrr_Kd_2_t = 0.5*prrr_size_t
+    prrr_Kd_2_t_2 = 0.5*prrr_size_t_2
+    # (prrr-rho2_2) squared amplitude
+    prrr_rho2_2_t = prrr_size*prrr_size*prrr_size_t_3
+    # (prrr-x_3) from the origin of joint 3 to the connection point
+    inv_prrr_size_t = 1.0/prrr_size_t
+    # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+    inv_prrr_size_t_2 = 1.0/prrr_size_t_2
+    # (prrr-w_3) reciprocal vector 2
+    prrr_w_3_in_axes3_y = 1.0/prrr_platform_joint_offset_x
+    # (prrr-acc_1) acceleration of the reference point of link 1, less gravity
+    prrr_g_in_axes0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy
+    # (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
+    prrr_f_1_o_in_axes0_x = -prrr_g_in_axes0_x*prrr_link1_mass
+    # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
+    prrr_g_in_axes0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx
+    # (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    prrr_d_phi_3_t = prrr_h_3_in_spec3_y*prrr_w_3_in_axes3_y
     # (prrr-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-    prrr_Jc_2_zz = prrr_J_2_zz + prrr_J_3_zz
+    prrr_Jc_2_in_axes2_zz = prrr_J_2_in_spec2_zz + prrr_J_3_in_spec3_zz
+    # (prrr-P_c_1) force that accelerates joint 1, per unit
+    prrr_P_c_1_in_axes0_x = prrr_link1_mass + prrr_link2_mass
+    # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    prrr_d_Gamma_3_t = prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y
+    prrr_d_Gamma_3_in_axes3_y = prrr_d_Gamma_3_t + prrr_h_3_in_spec3_x
+    # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_prrr_rho2_2_t = 1.0/prrr_rho2_2_t
+    inv_prrr_size = 1.0/prrr_size
     # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    prrr_d_G_t = inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_y
+    prrr_d_G_in_axes3_yy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_y
     # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    prrr_d_c_yy = -prrr_d_G_t - inv_prrr_platform_joint_offset_x*prrr_h_3_x
+    prrr_d_c_in_axes3_yy = -prrr_d_G_in_axes3_yy - prrr_h_3_in_spec3_x*prrr_w_3_in_axes3_y
     # (h_star) first moment about the platform origin
     prrr_h_star_t = prrr_link3_mass*prrr_platform_point_x
     prrr_h_star_t_2 = prrr_link3_mass*prrr_platform_point_y
@@ -675,78 +693,75 @@ def _prepare(p):
     prrr_J_star_t_2 = prrr_J_star_t + prrr_platform_point_x*prrr_platform_point_x
     prrr_J_star_t_3 = prrr_J_star_t*prrr_link3_mass
     prrr_J_star_t_4 = prrr_J_star_t_2*prrr_link3_mass
-    # (prrr-h_2) first moment of link 2 about the origin of link 2
-    prrr_h_2_x = prrr_link2_centre_of_mass_x*prrr_link2_mass
-    prrr_h_2_y = prrr_link2_centre_of_mass_y*prrr_link2_mass
-    # (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    prrr_g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy
-    prrr_g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx
-    # (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
-    prrr_f_1_o_x = prrr_g_r0_x*prrr_link1_mass
-    # (prrr-P_c_1) force that accelerates joint 1, per unit
-    prrr_P_c_1_t = prrr_link1_mass + prrr_link2_mass
-    # (prrr-h_1) first moment of link 1 about the origin of link 1
-    prrr_h_1_x = prrr_link1_centre_of_mass_x*prrr_link1_mass
-    prrr_h_1_y = prrr_link1_centre_of_mass_y*prrr_link1_mass
     # (potential) potential energy
-    prrr_b_r0_x = prrr_base_frame_xy*prrr_base_point_x + prrr_base_frame_yy*prrr_base_point_y
-    prrr_b_r0_y = -prrr_base_frame_xx*prrr_base_point_x - prrr_base_frame_yx*prrr_base_point_y
-    prrr_potential_t = prrr_b_r0_y*prrr_link1_mass
-    prrr_potential_t_2 = prrr_b_r0_y*prrr_link2_mass
-    # (prrr-rho2_2) squared amplitude
-    inv_prrr_rho2_2_t_4 = 1.0/prrr_rho2_2_t
-    # (prrr-w_2) reciprocal vector 1
-    inv_prrr_size = 1.0/prrr_size
-    total_prrr = np.sum(np.broadcast_to(prrr_link3_mass, _prrr))
-    total_prrr_x = np.sum(np.broadcast_to(prrr_h_star_t, _prrr))
-    total_prrr_y = np.sum(np.broadcast_to(prrr_h_star_t_2, _prrr))
-    total_prrr_xx = np.sum(np.broadcast_to(prrr_J_star_t_3, _prrr))
-    total_prrr_zz = np.sum(np.broadcast_to(prrr_J_star_t_4, _prrr))
-    total_prrr_x_2 = np.sum(np.broadcast_to(prrr_platform_point_x, _prrr))
-    total_prrr_y_2 = np.sum(np.broadcast_to(prrr_platform_point_y, _prrr))
-    total_prrr_2 = np.sum(np.broadcast_to(prrr_size_t, _prrr))
-    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-    rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
-    rrr_Kd_1_t_2 = 0.5*rrr_Kd_1_t
-    rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
-    rrr_Kd_1_t_4 = 0.5*rrr_Kd_1_t_3
-    # (rrr-size) length of the leg's lever arms, the measure of what is near singular
-    rrr_size_t = 4.58151643161e-07 + rrr_Kd_1_t + rrr_Kd_1_t_3
-    rrr_size = sqrt(rrr_size_t)
-    # (rrr-rho2_1) squared amplitude
-    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t
-    # (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-    inv_rrr_Kd_1_t_5 = 1.0/rrr_Kd_1_t
-    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-    inv_rrr_Kd_1_t_7 = 1.0/rrr_Kd_1_t_3
-    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
-    rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-h_2) first moment of link 2 about the connection point
-    rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x
-    rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
-    # (rrr-w_2) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
-    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y
-    # (rrr-J_2) inertia tensor of link 2 about the connection point
-    rrr_J_2_t = (
-    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y + rrr_rho_tip_2_x*rrr_rho_tip_2_x
+    prrr_b_in_axes0_x = (
+    prrr_base_frame_xy*prrr_base_point_x + prrr_base_frame_yy*prrr_base_point_y
     )
-    rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
-    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz
-    rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x
+    prrr_b_in_axes0_y = (
+    -prrr_base_frame_xx*prrr_base_point_x - prrr_base_frame_yx*prrr_base_point_y
+    )
+    prrr_potential_t = prrr_b_in_axes0_y*prrr_link1_mass
+    prrr_potential_t_2 = prrr_b_in_axes0_y*prrr_link2_mass
+    m_star_prrr = np.sum(np.broadcast_to(prrr_link3_mass, _prrr))
+    h_star_prrr_in_platform_x = np.sum(np.broadcast_to(prrr_h_star_t, _prrr))
+    h_star_prrr_in_platform_y = np.sum(np.broadcast_to(prrr_h_star_t_2, _prrr))
+    J_star_prrr_in_platform_xx = np.sum(np.broadcast_to(prrr_J_star_t_3, _prrr))
+    J_star_prrr_in_platform_zz = np.sum(np.broadcast_to(prrr_J_star_t_4, _prrr))
+    b_c_prrr_in_platform_x = np.sum(np.broadcast_to(prrr_platform_point_x, _prrr))
+    b_c_prrr_in_platform_y = np.sum(np.broadcast_to(prrr_platform_point_y, _prrr))
+    legs_size_prrr = np.sum(np.broadcast_to(prrr_size_t_3, _prrr))
+    # (rrr-size) length of the leg's lever arms, the measure of what is near singular
+    rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x
+    rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
+    rrr_size_t_3 = 4.58151643161e-07 + rrr_size_t + rrr_size_t_2
+    rrr_size = sqrt(rrr_size_t_3)
+    # (rrr-h_1) first moment of link 1 about the origin of link 1
+    rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
+    rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
     # (rrr-J_1) inertia tensor of link 1 about the origin of link 1
     rrr_J_1_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
-    rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass
+    # (rrr-rho_tip_2) connection point to the centre of mass of link 2
+    rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
+    # (rrr-h_2) first moment of link 2 about the connection point
+    rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x
+    rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-J_2) inertia tensor of link 2 about the connection point
+    rrr_J_2_t = (
+    rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+        rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x
+    )
+    rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass
+    # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    rrr_Kd_1_t = 0.5*rrr_size_t
+    rrr_Kd_1_t_2 = 0.5*rrr_size_t_2
+    # (rrr-rho2_1) squared amplitude
+    rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3
+    # (rrr-x_2) from the origin of joint 2 to the connection point
+    inv_rrr_size_t = 1.0/rrr_size_t
+    # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+    inv_rrr_size_t_2 = 1.0/rrr_size_t_2
+    # (rrr-w_2) reciprocal vector 2
+    rrr_w_2_in_axes2_y = 1.0/rrr_platform_joint_offset_x
+    # (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    rrr_d_phi_2_in_axes2_xy = -rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y
     # (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
-    rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz
+    rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz
+    # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y
+    rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x
+    # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
+    rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
+    rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
+    # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_rrr_rho2_1_t = 1.0/rrr_rho2_1_t
+    inv_rrr_size = 1.0/rrr_size
     # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    rrr_d_c_yy = (
-    -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y - inv_rrr_platform_joint_offset_x*rrr_h_2_x
+    rrr_d_c_in_axes2_yy = (
+    -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y - rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y
     )
     # (h_star) first moment about the platform origin
     rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x
@@ -756,111 +771,117 @@ def _prepare(p):
     rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x
     rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass
     rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass
-    # (rrr-h_1) first moment of link 1 about the origin of link 1
-    rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
-    rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
-    # (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-    rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
-    rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
     # (potential) potential energy
-    rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
-    rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    # (rrr-rho2_1) squared amplitude
-    inv_rrr_rho2_1_t_4 = 1.0/rrr_rho2_1_t
-    # (rrr-w_1) reciprocal vector 1
-    inv_rrr_size = 1.0/rrr_size
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
-    total_rrr_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
-    total_rrr_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
-    total_rrr_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
-    total_rrr_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
-    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
-    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
-    total_rrr_2 = np.sum(np.broadcast_to(rrr_size_t, _rrr))
+    rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
+    rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    m_star_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    h_star_rrr_in_platform_x = np.sum(np.broadcast_to(rrr_h_star_t, _rrr))
+    h_star_rrr_in_platform_y = np.sum(np.broadcast_to(rrr_h_star_t_2, _rrr))
+    J_star_rrr_in_platform_xx = np.sum(np.broadcast_to(rrr_J_star_t_3, _rrr))
+    J_star_rrr_in_platform_zz = np.sum(np.broadcast_to(rrr_J_star_t_4, _rrr))
+    b_c_rrr_in_platform_x = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    b_c_rrr_in_platform_y = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    legs_size_rrr = np.sum(np.broadcast_to(rrr_size_t_3, _rrr))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_prrr + total_rrr
+    m_star = m_star_prrr + m_star_rrr + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_prrr_x + total_rrr_x
-    h_star_y = h_star_t_2 + total_prrr_y + total_rrr_y
+    h_star_in_platform_x = h_star_prrr_in_platform_x + h_star_rrr_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_prrr_in_platform_y + h_star_rrr_in_platform_y + h_star_t_2
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = J_star_t_3 + total_prrr_xx + total_rrr_xx
-    J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_prrr_zz - total_rrr_zz
-    J_star_t_6 = J_star_t_5 - J_star_xx
+    J_star_in_platform_xx = J_star_prrr_in_platform_xx + J_star_rrr_in_platform_xx + J_star_t_3
+    J_star_t_5 = (
+    J_star_in_platform_xx - J_star_prrr_in_platform_zz - J_star_rrr_in_platform_zz - J_star_t_4 -
+        platform_inertia_zz
+    )
+    J_star_zz = J_star_in_platform_xx - J_star_t_5
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_prrr_x_2 + 0.3333333333333333*total_rrr_x_2
-    b_c_y = 0.3333333333333333*total_prrr_y_2 + 0.3333333333333333*total_rrr_y_2
+    b_c_in_platform_x = (
+    0.3333333333333333*b_c_prrr_in_platform_x + 0.3333333333333333*b_c_rrr_in_platform_x
+    )
+    b_c_in_platform_y = (
+    0.3333333333333333*b_c_prrr_in_platform_y + 0.3333333333333333*b_c_rrr_in_platform_y
+    )
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = sqrt(0.3333333333333333*total_prrr_2 + 0.3333333333333333*total_rrr_2)
+    legs_size = sqrt(0.3333333333333333*legs_size_prrr + 0.3333333333333333*legs_size_rrr)
     return {
         "dynamics": (
-        (J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x,
+                h_star_in_platform_y, m_star,),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
-                    prrr_J_3_zz, prrr_Jc_2_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_P_c_1_t,
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
+                    prrr_Jc_2_in_axes2_zz, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_P_c_1_in_axes0_x,
                     prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
                     prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
-                    prrr_d_G_t, prrr_d_Gamma_3_t, prrr_d_Gamma_3_y, prrr_d_c_yy, prrr_d_phi_3_t,
-                    prrr_f_1_o_x, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x, prrr_h_2_y, prrr_h_3_x,
-                    prrr_h_3_y, prrr_joint3_offset_x, prrr_link2_mass,
-                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-                    prrr_rho2_2_t, prrr_size,),
+                    prrr_d_G_in_axes3_yy, prrr_d_Gamma_3_in_axes3_y, prrr_d_Gamma_3_t,
+                    prrr_d_c_in_axes3_yy, prrr_d_phi_3_t, prrr_f_1_o_in_axes0_x,
+                    prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+                    prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
+                    prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
+                    prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+                    prrr_w_3_in_axes3_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
+                    rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
-                    rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+                    rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t,
+                    rrr_d_c_in_axes2_yy, rrr_d_phi_2_in_axes2_xy, rrr_h_1_in_spec1_x,
+                    rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+                    rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+                    rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_6, h_star_x, h_star_y, m_star,),
+        (J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_3_zz,
-                    prrr_Jc_2_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_P_c_1_t, prrr_base_frame_xx,
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_3_in_spec3_zz, prrr_Jc_2_in_axes2_zz,
+                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_P_c_1_in_axes0_x, prrr_base_frame_xx,
                     prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_branch_2, prrr_d_G_t, prrr_d_Gamma_3_t,
-                    prrr_d_Gamma_3_y, prrr_d_c_yy, prrr_d_phi_3_t, prrr_h_2_x, prrr_h_2_y,
-                    prrr_h_3_y, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
-                    prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
+                    prrr_base_point_y, prrr_branch_2, prrr_d_G_in_axes3_yy,
+                    prrr_d_Gamma_3_in_axes3_y, prrr_d_Gamma_3_t, prrr_d_c_in_axes3_yy,
+                    prrr_d_phi_3_t, prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_y,
+                    prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
+                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
-                    rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+                    rrr_d_phi_2_in_axes2_xy, rrr_h_2_in_spec2_y, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
         "Z": (
-        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,),
+        (Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
-                    prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
-                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_branch_2, prrr_f_1_o_x, prrr_g_r0_x, prrr_g_r0_y,
-                    prrr_h_2_x, prrr_h_2_y, prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x,
-                    prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
-                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
+                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
+                    prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+                    prrr_branch_2, prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x, prrr_g_in_axes0_y,
+                    prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x,
+                    prrr_h_3_in_spec3_y, prrr_joint3_offset_x, prrr_link2_mass,
+                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
+                    prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -868,14 +889,14 @@ def _prepare(p):
         (),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx,
                     prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
                     prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x,
                     prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
                     prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
@@ -884,24 +905,26 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
-                    prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
-                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x,
-                    prrr_h_2_y, prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link1_mass,
-                    prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
-                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
+                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
+                    prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+                    prrr_branch_2, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+                    prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
+                    prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass,
+                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
+                    prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -909,14 +932,14 @@ def _prepare(p):
         (),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx,
                     prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
                     prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x,
                     prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
                     prrr_rho2_2_t,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
                     rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
                     rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
                     rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
@@ -928,18 +951,18 @@ def _prepare(p):
         (),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_Kd_2_t_2,
-                    prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
-                    prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
-                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx,
+                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+                    prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x,
+                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
+                    prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -947,18 +970,18 @@ def _prepare(p):
         (),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_Kd_2_t_2,
-                    prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
-                    prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
-                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx,
+                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+                    prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x,
+                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
+                    prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-                    rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x,
+                    rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y,
+                    rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
@@ -966,59 +989,63 @@ def _prepare(p):
         (gravity_x, gravity_y,),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
-                    prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
-                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-                    prrr_base_point_y, prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x,
-                    prrr_h_2_y, prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link3_mass,
-                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-                    prrr_rho2_2_t, prrr_size,),
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
+                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
+                    prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+                    prrr_branch_2, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+                    prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
+                    prrr_joint3_offset_x, prrr_link3_mass, prrr_platform_joint_offset_x,
+                    prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+                    prrr_w_3_in_axes3_y,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-                    rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-                    rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-                    rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x,
-                    rrr_h_2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-                    rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+                    rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+                    rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+                    rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link2_mass, rrr_mu_1_t,
+                    rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_rho2_1_t, rrr_size, rrr_w_2_in_axes2_y,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, h_star_x, h_star_y, m_star,),
+        (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_b_r0_x,
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_b_in_axes0_x,
                     prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
                     prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
-                    prrr_g_r0_x, prrr_g_r0_y, prrr_h_1_x, prrr_h_1_y, prrr_h_2_x, prrr_h_2_y,
-                    prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link1_mass,
-                    prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
-                    prrr_platform_point_y, prrr_potential_t, prrr_potential_t_2, prrr_rho2_2_t,),
+                    prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_1_in_spec0_x,
+                    prrr_h_1_in_spec0_y, prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y,
+                    prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
+                    prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x,
+                    prrr_platform_point_x, prrr_platform_point_y, prrr_potential_t,
+                    prrr_potential_t_2, prrr_rho2_2_t,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
-                    rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-                    rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y,
-                    rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x,
-                    rrr_link1_mass, rrr_platform_joint_offset_x, rrr_platform_point_x,
-                    rrr_platform_point_y, rrr_rho2_1_t,),
+        (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+                    rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+                    rrr_base_point_y, rrr_branch_1, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+                    rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link1_mass,
+                    rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+                    rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, legs_size,),
+        (b_c_in_platform_x, b_c_in_platform_y, legs_size,),
             (
                 (_prrr,
-        (inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_rho2_2_t_4, inv_prrr_size, prrr_Kd_2_t_2,
-                    prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+        (inv_prrr_rho2_2_t, inv_prrr_size, inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t,
+                    prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
                     prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
                     prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
                     prrr_platform_point_y, prrr_rho2_2_t, prrr_size,),
                 ),
                 (_rrr,
-        (inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
-                    rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        (inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
+                    rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
                     rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
                     rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
                     rrr_platform_point_y, rrr_rho2_1_t, rrr_size,),
@@ -1488,7 +1515,10 @@ def _run_dynamics(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("dynamics")
-    J_star_t_6, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    (
+    J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y,
+        m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -1508,297 +1538,335 @@ def _run_dynamics(m, X, V):
     out_M = m.zeros("M")
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
-            prrr_J_3_zz, prrr_Jc_2_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_P_c_1_t,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
+            prrr_Jc_2_in_axes2_zz, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_P_c_1_in_axes0_x,
             prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
-            prrr_base_point_x, prrr_base_point_y, prrr_branch_2, prrr_d_G_t, prrr_d_Gamma_3_t,
-            prrr_d_Gamma_3_y, prrr_d_c_yy, prrr_d_phi_3_t, prrr_f_1_o_x, prrr_g_r0_x, prrr_g_r0_y,
-            prrr_h_2_x, prrr_h_2_y, prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link2_mass,
-            prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            prrr_rho2_2_t, prrr_size,
+            prrr_base_point_x, prrr_base_point_y, prrr_branch_2, prrr_d_G_in_axes3_yy,
+            prrr_d_Gamma_3_in_axes3_y, prrr_d_Gamma_3_t, prrr_d_c_in_axes3_yy, prrr_d_phi_3_t,
+            prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+            prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
+            prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
+            prrr_platform_point_y, prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         prrr_yd_1 = V[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
-        # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        axis_y_prrr_axes3_in_base_x = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        axis_y_prrr_axes3_in_base_y = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
-        # (prrr-w_3) reciprocal vector 2
-        prrr_w_3_t = inv_prrr_platform_joint_offset_x*inv_prrr_r_2_r0_y*prrr_r_2_r0_x
-        # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_r0_x
-        prrr_d_Gamma_3_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_J_3_zz - prrr_d_Gamma_3_t_2)
-        # (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prrr_d_Gamma_2_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_Jc_2_zz - prrr_d_Gamma_3_t_2)
-        # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_d_G_xx = prrr_d_Gamma_3_x*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_2_x
-        prrr_d_G_xy = prrr_d_Gamma_3_y*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_3_y
-        # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prrr_d_c_xy = prrr_d_phi_3_t - prrr_d_G_xy
-        # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        prrr_Q_t = prrr_h_3_y*(prrr_w_3_t - inv_prrr_r_2_r0_y) - prrr_d_G_xx - prrr_d_c_yy
-        prrr_Q_t_2 = 0.5*prrr_Q_t
-        prrr_Q_t_3 = (
-        axis_y_prrr_axes3_in_base_x*prrr_d_c_xy + axis_y_prrr_axes3_in_base_y*prrr_Q_t_2
-        )
-        prrr_Q_t_4 = (
-        axis_y_prrr_axes3_in_base_x*prrr_Q_t_2 - axis_y_prrr_axes3_in_base_y*prrr_d_c_xy
-        )
-        prrr_Q_t_5 = prrr_d_c_yy + 2.0*axis_y_prrr_axes3_in_base_y*prrr_Q_t_3
-        prrr_Q_t_6 = (
-        axis_y_prrr_axes3_in_base_x*prrr_Q_t_3 + axis_y_prrr_axes3_in_base_y*prrr_Q_t_4
-        )
-        prrr_Q_t_7 = prrr_d_c_yy + 2.0*axis_y_prrr_axes3_in_base_x*prrr_Q_t_4
-        # (M_ta) coupling block of M
-        prrr_M_ta_t = prrr_Q_t_5*prrr_q_in_base_y + prrr_Q_t_6*prrr_q_in_base_x
-        prrr_M_ta_t_2 = prrr_Q_t_6*prrr_q_in_base_y + prrr_Q_t_7*prrr_q_in_base_x
-        # (M_aa) rotational block of M
-        prrr_M_aa_t = prrr_M_ta_t*prrr_q_in_base_y + prrr_M_ta_t_2*prrr_q_in_base_x
         # (prrr-S_dot) velocity of the connection point
-        prrr_S_dot_t = omega_z*prrr_q_in_base_y
-        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_t = omega_z*prrr_q_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_x
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        # (prrr-w_2) reciprocal vector 1
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        )
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
+        prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        # (prrr-w_3) reciprocal vector 2
+        prrr_w_3_in_axes3_x = inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_3) rate of joint 3
+        # (prrr-qd_2) rate of joint 2
         prrr_qd_2 = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
+        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
-        # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_z = (
-        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
-        )
-        # (prrr-u_1) centripetal acceleration of the connection point
-        prrr_u_1_t = omega_z*prrr_S_dot_t_2
-        prrr_u_1_t_2 = omega_z*prrr_S_dot_t
         # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_t = prrr_qd_2*prrr_qd_2
+        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_in_axes3_z = (
+        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+        )
         # (prrr-W_3) centripetal tensor of link 3
-        prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z
-        # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_x = (
-        -prrr_W_3_t*prrr_platform_joint_offset_x - prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
-        )
+        prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
-        prrr_u_1_tip_x = (
-        axis_y_prrr_axes3_in_base_x*prrr_u_1_t_2 - axis_y_prrr_axes3_in_base_y*prrr_u_1_t
-        )
-        prrr_u_1_tip_y = (
-        -axis_y_prrr_axes3_in_base_x*prrr_u_1_t - axis_y_prrr_axes3_in_base_y*prrr_u_1_t_2
+        prrr_u_1_x = -omega_z*prrr_S_dot_t_2
+        prrr_u_1_t = omega_z*prrr_S_dot_t
+        prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x + axis_y_prrr_axes3_x*prrr_u_1_t
+        prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x - axis_x_prrr_axes3_x*prrr_u_1_t
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_x = (
+        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_W_3_t*prrr_platform_joint_offset_x
         )
         # (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prrr_rel_o_x = prrr_u_1_tip_x - prrr_bias_x
-        prrr_rel_o_y = prrr_u_1_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3
-        # (prrr-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        prrr_qdd_2_o = inv_prrr_r_2_r0_y*prrr_rel_o_x
+        prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
+        prrr_rel_o_in_axes3_y = (
+        prrr_u_1_in_axes3_y - prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        )
+        # (prrr-B_2_o) remainder of the acceleration tensor of link 2
+        prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x
         # (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        prrr_alpha_3_o_z = (
-        inv_prrr_platform_joint_offset_x*(prrr_rel_o_y + prrr_qdd_2_o*prrr_r_2_r0_x) -
-            prrr_qdd_2_o
+        prrr_alpha_3_o_in_axes3_z = (
+        prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y + prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) -
+            prrr_B_2_o_in_axes2_xy
+        )
+        # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        prrr_g_in_axes2_x = prrr_c_2*prrr_g_in_axes0_x + prrr_g_in_axes0_y*prrr_s_2
+        prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_y - prrr_g_in_axes0_x*prrr_s_2
+        prrr_f_2_o_in_axes2_x = (
+        prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y + prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x -
+            prrr_g_in_axes2_x*prrr_link2_mass
+        )
+        prrr_f_2_o_in_axes2_y = (
+        prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x -
+            prrr_g_in_axes2_y*prrr_link2_mass
         )
         # (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        prrr_acc_3_o_x = (
-        prrr_u_1_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x
+        prrr_acc_3_o_in_axes3_x = (
+        prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
         )
-        prrr_acc_3_o_y = (
-        prrr_u_1_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y
+        prrr_acc_3_o_in_axes3_y = (
+        prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
         )
-        # (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        prrr_mu_3_o_z = (
-        prrr_J_3_zz*prrr_alpha_3_o_z + prrr_acc_3_o_y*prrr_h_3_x - prrr_acc_3_o_x*prrr_h_3_y
-        )
-        # (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prrr_g_r1_x = prrr_c_2*prrr_g_r0_x + prrr_g_r0_y*prrr_s_2
-        prrr_g_r1_y = prrr_c_2*prrr_g_r0_y - prrr_g_r0_x*prrr_s_2
-        # (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prrr_mu_2_o_z = prrr_g_r1_x*prrr_h_2_y - prrr_J_2_zz*prrr_qdd_2_o - prrr_g_r1_y*prrr_h_2_x
-        # (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        prrr_N_2_o_z = prrr_mu_2_o_z + prrr_mu_3_o_z
-        # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_G_o_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_o_z
-        prrr_G_o_t_2 = inv_prrr_r_2_r0_y*(prrr_G_o_t*prrr_r_2_r0_x - prrr_N_2_o_z)
-        # (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prrr_c_o_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_o_z*prrr_h_3_y - prrr_G_o_t_2
-        prrr_c_o_y = prrr_W_3_t*prrr_h_3_y - prrr_G_o_t - prrr_alpha_3_o_z*prrr_h_3_x
-        # (prrr-U) velocity and gravity terms of the leg force
-        prrr_U_in_base_x = (
-        -axis_y_prrr_axes3_in_base_x*prrr_c_o_y - axis_y_prrr_axes3_in_base_y*prrr_c_o_x
-        )
-        prrr_U_in_base_y = (
-        axis_y_prrr_axes3_in_base_x*prrr_c_o_x - axis_y_prrr_axes3_in_base_y*prrr_c_o_y
-        )
-        # (Z_a) rotational part of Z
-        prrr_Z_a_t = prrr_U_in_base_y*prrr_q_in_base_x - prrr_U_in_base_x*prrr_q_in_base_y
-        # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        prrr_f_2_o_x = (
-        prrr_h_2_y*prrr_qdd_2_o - prrr_W_2_t*prrr_h_2_x - prrr_g_r1_x*prrr_link2_mass
-        )
-        prrr_f_2_o_y = (
-        -prrr_W_2_t*prrr_h_2_y - prrr_g_r1_y*prrr_link2_mass - prrr_h_2_x*prrr_qdd_2_o
-        )
-        # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        prrr_T_1_o_x = prrr_c_2*prrr_f_2_o_x - prrr_f_1_o_x - prrr_f_2_o_y*prrr_s_2
-        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        prrr_P_1_o_t = axis_y_prrr_axes3_r1_x*prrr_G_o_t + axis_y_prrr_axes3_r1_y*prrr_G_o_t_2
-        prrr_P_1_o = prrr_T_1_o_x - prrr_P_1_o_t
         # (prrr-P_c_2) force that accelerates joint 2, per unit
-        prrr_P_c_2_r0_x = -prrr_c_2*prrr_h_2_y - prrr_h_2_x*prrr_s_2
-        # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        prrr_d_P_1_t = axis_y_prrr_axes3_r1_x*prrr_d_G_t + axis_y_prrr_axes3_r1_y*prrr_d_G_xy
-        prrr_d_P_1_x = (
-        -axis_y_prrr_axes3_r1_y*prrr_d_G_xx - inv_prrr_r_2_r0_y*prrr_P_c_2_r0_x -
-            axis_y_prrr_axes3_r1_x*inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_x
+        prrr_P_c_2_in_axes0_x = -prrr_c_2*prrr_h_2_in_spec2_y - prrr_h_2_in_spec2_x*prrr_s_2
+        # (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        prrr_mu_3_o_in_axes3_z = (
+        prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
+            prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
+            prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y
         )
-        prrr_d_P_1_in_base_x = (
-        axis_y_prrr_axes3_in_base_y*prrr_d_P_1_x - axis_y_prrr_axes3_in_base_x*prrr_d_P_1_t
+        # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_in_axes3_x
+        prrr_d_Gamma_3_in_axes3_x = (
+        -prrr_h_3_in_spec3_y - inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2)
         )
-        prrr_d_P_1_in_base_y = (
-        -axis_y_prrr_axes3_in_base_x*prrr_d_P_1_x - axis_y_prrr_axes3_in_base_y*prrr_d_P_1_t
-        )
-        # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
-        prrr_M_ya_1_z = (
-        prrr_d_P_1_in_base_y*prrr_q_in_base_x - prrr_d_P_1_in_base_x*prrr_q_in_base_y
-        )
-        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
-        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
-        # (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prrr_dy_1_Gamma_1 = prrr_P_c_1_t + prrr_P_c_2_r0_x*prrr_dy_1_qdd_2
         # (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         prrr_dy_1_Gamma_3_t = (
-        inv_prrr_platform_joint_offset_x*prrr_J_3_zz*(axis_y_prrr_axes3_r1_x +
-            prrr_dy_1_qdd_2*prrr_r_2_r0_x)
+        prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
+            prrr_r_2_in_axes3_x*prrr_w_2_t)
         )
-        prrr_dy_1_Gamma_3 = prrr_J_3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t - prrr_dy_1_Gamma_3_t
+        # (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prrr_mu_2_o_in_axes2_z = (
+        prrr_g_in_axes2_x*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz -
+            prrr_g_in_axes2_y*prrr_h_2_in_spec2_x
+        )
+        # (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z
         # (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prrr_dy_1_Gamma_2 = prrr_P_c_2_r0_x + prrr_Jc_2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        prrr_dy_1_Gamma_2 = (
+        prrr_P_c_2_in_axes0_x + prrr_Jc_2_in_axes2_zz*prrr_w_2_t - prrr_dy_1_Gamma_3_t
+        )
+        # (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prrr_d_Gamma_2_in_axes3_x = (
+        -prrr_h_3_in_spec3_y - inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz -
+            prrr_d_Gamma_3_t_2)
+        )
+        # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+        prrr_T_1_o_in_axes0_x = (
+        prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x - prrr_f_2_o_in_axes2_y*prrr_s_2
+        )
+        # (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_w_2_t
         # (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_dy_1_G_t = inv_prrr_platform_joint_offset_x*prrr_dy_1_Gamma_3
+        prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y
+        # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_d_G_in_axes3_xx = (
+        prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x
+        )
+        prrr_d_G_in_axes3_xy = (
+        prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y
+        )
+        # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y
+        prrr_G_o_in_axes3_x = (
+        inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_o_in_axes2_z)
+        )
+        # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy
+        # (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_o_in_axes3_x = (
+        prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y -
+            prrr_G_o_in_axes3_x
+        )
+        prrr_c_o_in_axes3_y = (
+        prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
+            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x
+        )
+        # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        prrr_Q_t = (
+        prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x - inv_prrr_r_2_in_axes3_y) - prrr_d_G_in_axes3_xx
+            - prrr_d_c_in_axes3_yy
+        )
+        prrr_Q_t_2 = 0.5*prrr_Q_t
+        prrr_Q_t_3 = axis_x_prrr_axes3_x*prrr_Q_t_2 + axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy
+        prrr_Q_t_4 = axis_y_prrr_axes3_x*prrr_Q_t_2 - axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy
+        prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2.0*axis_x_prrr_axes3_x*prrr_Q_t_3
+        prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3
+        prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2.0*axis_y_prrr_axes3_x*prrr_Q_t_4
+        # (prrr-U) velocity and gravity terms of the leg force
+        prrr_U_x = (
+        -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x - axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y
+        )
+        prrr_U_y = (
+        axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x - axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y
+        )
         # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
         prrr_dy_1_P_1_t = (
-        axis_y_prrr_axes3_r1_x*prrr_dy_1_G_t +
-            axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y*(prrr_dy_1_G_t*prrr_r_2_r0_x -
-            prrr_dy_1_Gamma_2)
+        prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
+            inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
+            - prrr_dy_1_Gamma_2)
         )
         prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t
-        # (prrr-w_2) reciprocal vector 1
-        prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y
-        prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y
+        # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_d_P_1_in_axes3_y = (
+        -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x - prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y
+        )
+        prrr_d_P_1_in_axes3_x = (
+        -inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x - prrr_d_G_in_axes3_xx*prrr_e_1_in_axes3_x
+            - prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y
+        )
+        prrr_d_P_1_x = (
+        axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x + axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y
+        )
+        prrr_d_P_1_y = (
+        axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y - axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x
+        )
+        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_P_1_o_t = (
+        prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x + prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
+        )
+        prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t
+        # (M_ta) coupling block of M
+        prrr_M_ta_t = prrr_Q_xy*prrr_q_x - prrr_Q_xx*prrr_q_y
+        prrr_M_ta_t_2 = prrr_Q_yy*prrr_q_x - prrr_Q_xy*prrr_q_y
+        # (M_aa) rotational block of M
+        prrr_M_aa_t = prrr_M_ta_t_2*prrr_q_x - prrr_M_ta_t*prrr_q_y
+        # (Z_a) rotational part of Z
+        prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y
+        # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
+        prrr_M_ya_1_z = prrr_d_P_1_y*prrr_q_x - prrr_d_P_1_x*prrr_q_y
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
-        prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t
+        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (prrr_disc_2 >= 0.0) & (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
         sums = m.added(sums, leg, (
-        prrr_Q_t_5, prrr_Q_t_6, prrr_Q_t_7, prrr_M_ta_t, prrr_M_ta_t_2, prrr_M_aa_t,
-            prrr_U_in_base_x, prrr_U_in_base_y, prrr_Z_a_t,
+        prrr_Q_xx, prrr_Q_xy, prrr_Q_yy, prrr_M_ta_t, prrr_M_ta_t_2, prrr_M_aa_t, prrr_U_x,
+            prrr_U_y, prrr_Z_a_t,
         ))
+        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
         out_Z[_Z_prrr[0][leg]] = prrr_P_1_o
-        out_M[_M_prrr[0][leg]] = prrr_d_P_1_in_base_x
-        out_M[_M_prrr[1][leg]] = prrr_d_P_1_in_base_x
-        out_M[_M_prrr[2][leg]] = prrr_d_P_1_in_base_y
-        out_M[_M_prrr[3][leg]] = prrr_d_P_1_in_base_y
+        # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        out_M[_M_prrr[0][leg]] = prrr_d_P_1_x
+        out_M[_M_prrr[1][leg]] = prrr_d_P_1_x
+        out_M[_M_prrr[2][leg]] = prrr_d_P_1_y
+        out_M[_M_prrr[3][leg]] = prrr_d_P_1_y
+        # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
         out_M[_M_prrr[4][leg]] = prrr_M_ya_1_z
         out_M[_M_prrr[5][leg]] = prrr_M_ya_1_z
+        # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
         out_M[_M_prrr[6][leg]] = prrr_dy_1_P_1
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_prrr[0][leg]] = 1.0
-        out_H[_H_prrr[1][leg]] = -prrr_w_2_t
-        out_H[_H_prrr[2][leg]] = prrr_w_2_t_2
+        # (prrr-w_2) reciprocal vector 1
+        out_H[_H_prrr[1][leg]] = prrr_w_2_x
+        out_H[_H_prrr[2][leg]] = prrr_w_2_y
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
-        out_H[_H_prrr[4][leg]] = prrr_dy_1_qdd_2
+        # (prrr-w_2) reciprocal vector 1
+        out_H[_H_prrr[4][leg]] = prrr_w_2_t
     (
-    total_prrr_xx, total_prrr_xy, total_prrr_yy, total_prrr_xz, total_prrr_yz, total_prrr_zz,
-        total_prrr_x, total_prrr_y, total_prrr_z,
+    M_tt_prrr_xx, M_tt_prrr_xy, M_tt_prrr_yy, M_ta_prrr_xz, M_ta_prrr_yz, M_aa_prrr_zz,
+        Z_t_prrr_x, Z_t_prrr_y, Z_a_prrr_z,
     ) = sums
     sums = [0.0] * 9
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
-            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-            rrr_base_point_y, rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy,
-            rrr_d_phi_2_t, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
+            rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy,
+            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
+            rrr_branch_1, rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+            rrr_d_phi_2_in_axes2_xy, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x,
+            rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -1807,183 +1875,187 @@ def _run_dynamics(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
-        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
-        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
-        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = (
-        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
-            rrr_d_Gamma_2_x*rrr_w_2_t
-        )
-        rrr_Q_t_2 = 0.5*rrr_Q_t
-        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
-        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
-        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
-        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
-        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
-        # (M_ta) coupling block of M
-        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
-        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
-        # (M_aa) rotational block of M
-        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        # (rrr-w_2) reciprocal vector 2
+        rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
-        )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_t = omega_z*rrr_S_dot_t_2
-        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
+        )
         # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
+        rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
+        rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_tip_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
-        )
-        rrr_u_1_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
-        )
         # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
-        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1_o) remainder of the acceleration tensor of link 1
+        rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrr_alpha_2_o_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
+        rrr_alpha_2_o_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_o_in_axes1_xy
         )
         # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_x = (
-        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
+        rrr_acc_2_o_in_axes2_x = (
+        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
-        rrr_acc_2_o_y = (
-        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
+        rrr_acc_2_o_in_axes2_y = (
+        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_o_z = (
-        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
+        rrr_mu_2_o_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
+        )
+        # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
+        rrr_d_Gamma_2_in_axes2_x = (
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
         # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_o_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_in_axes2_x = (
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
+        )
         # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_in_axes2_xy = (
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
+        )
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_o_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
-            - rrr_N_1_o_z)
+        rrr_c_o_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
-        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        rrr_c_o_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        )
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = (
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
+            inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
+        )
+        rrr_Q_t_2 = 0.5*rrr_Q_t
+        rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_4
         # (rrr-U) velocity and gravity terms of the leg force
-        rrr_U_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
-        )
-        rrr_U_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
-        )
+        rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
+        rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
+        # (M_ta) coupling block of M
+        rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
+        rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
+        # (M_aa) rotational block of M
+        rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y
         # (Z_a) rotational part of Z
-        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
-            rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
+        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t, rrr_U_x, rrr_U_y,
+            rrr_Z_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     (
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
-        total_rrr_x, total_rrr_y, total_rrr_z,
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz, Z_t_rrr_x,
+        Z_t_rrr_y, Z_a_rrr_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_prrr_xx - total_rrr_xx
-    M_tt_xy = total_prrr_xy + total_rrr_xy
-    M_tt_yy = m_star - total_prrr_yy - total_rrr_yy
+    M_tt_xx = M_tt_prrr_xx + M_tt_rrr_xx + m_star
+    M_tt_xy = M_tt_prrr_xy + M_tt_rrr_xy
+    M_tt_yy = M_tt_prrr_yy + M_tt_rrr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y
-    M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz
+    M_ta_xz = M_ta_prrr_xz + M_ta_rrr_xz - h_star_y
+    M_ta_yz = M_ta_prrr_yz + M_ta_rrr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = -J_star_t_6 - total_prrr_zz - total_rrr_zz
+    M_aa_zz = J_star_zz + M_aa_prrr_zz + M_aa_rrr_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prrr_x + total_rrr_x
-    Z_t_y = Z_p_y + total_prrr_y + total_rrr_y
+    Z_t_x = Z_p_x + Z_t_prrr_x + Z_t_rrr_x
+    Z_t_y = Z_p_y + Z_t_prrr_y + Z_t_rrr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_prrr_z + total_rrr_z - Z_q_t
+    Z_a_z = Z_a_prrr_z + Z_a_rrr_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[4] = M_tt_xy
     out_M[5] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[8] = M_ta_xz
     out_M[6] = M_ta_yz
     out_M[9] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[10] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_M, out_Z, out_H,)
 
@@ -1994,7 +2066,7 @@ def _run_M(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("M")
-    J_star_t_6, h_star_x, h_star_y, m_star = shared
+    J_star_zz, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2006,180 +2078,199 @@ def _run_M(m, X):
     ok = True
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_3_zz,
-            prrr_Jc_2_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_P_c_1_t, prrr_base_frame_xx,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_3_in_spec3_zz, prrr_Jc_2_in_axes2_zz,
+            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_P_c_1_in_axes0_x, prrr_base_frame_xx,
             prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
-            prrr_base_point_y, prrr_branch_2, prrr_d_G_t, prrr_d_Gamma_3_t, prrr_d_Gamma_3_y,
-            prrr_d_c_yy, prrr_d_phi_3_t, prrr_h_2_x, prrr_h_2_y, prrr_h_3_y, prrr_joint3_offset_x,
+            prrr_base_point_y, prrr_branch_2, prrr_d_G_in_axes3_yy, prrr_d_Gamma_3_in_axes3_y,
+            prrr_d_Gamma_3_t, prrr_d_c_in_axes3_yy, prrr_d_phi_3_t, prrr_h_2_in_spec2_x,
+            prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
             prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            prrr_rho2_2_t, prrr_size,
+            prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        )
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
+        )
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        axis_y_prrr_axes3_in_base_x = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
-        )
-        axis_y_prrr_axes3_in_base_y = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
-        )
-        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         # (prrr-w_3) reciprocal vector 2
-        prrr_w_3_t = inv_prrr_platform_joint_offset_x*inv_prrr_r_2_r0_y*prrr_r_2_r0_x
-        # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_r0_x
-        prrr_d_Gamma_3_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_J_3_zz - prrr_d_Gamma_3_t_2)
-        # (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prrr_d_Gamma_2_x = -prrr_h_3_y - inv_prrr_r_2_r0_y*(prrr_Jc_2_zz - prrr_d_Gamma_3_t_2)
-        # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_d_G_xx = prrr_d_Gamma_3_x*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_2_x
-        prrr_d_G_xy = prrr_d_Gamma_3_y*prrr_w_3_t - inv_prrr_r_2_r0_y*prrr_d_Gamma_3_y
-        # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prrr_d_c_xy = prrr_d_phi_3_t - prrr_d_G_xy
-        # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        prrr_Q_t = prrr_h_3_y*(prrr_w_3_t - inv_prrr_r_2_r0_y) - prrr_d_G_xx - prrr_d_c_yy
-        prrr_Q_t_2 = 0.5*prrr_Q_t
-        prrr_Q_t_3 = (
-        axis_y_prrr_axes3_in_base_x*prrr_d_c_xy + axis_y_prrr_axes3_in_base_y*prrr_Q_t_2
-        )
-        prrr_Q_t_4 = (
-        axis_y_prrr_axes3_in_base_x*prrr_Q_t_2 - axis_y_prrr_axes3_in_base_y*prrr_d_c_xy
-        )
-        prrr_Q_t_5 = prrr_d_c_yy + 2.0*axis_y_prrr_axes3_in_base_y*prrr_Q_t_3
-        prrr_Q_t_6 = (
-        axis_y_prrr_axes3_in_base_x*prrr_Q_t_3 + axis_y_prrr_axes3_in_base_y*prrr_Q_t_4
-        )
-        prrr_Q_t_7 = prrr_d_c_yy + 2.0*axis_y_prrr_axes3_in_base_x*prrr_Q_t_4
-        # (M_ta) coupling block of M
-        prrr_M_ta_t = prrr_Q_t_5*prrr_q_in_base_y + prrr_Q_t_6*prrr_q_in_base_x
-        prrr_M_ta_t_2 = prrr_Q_t_6*prrr_q_in_base_y + prrr_Q_t_7*prrr_q_in_base_x
-        # (M_aa) rotational block of M
-        prrr_M_aa_t = prrr_M_ta_t*prrr_q_in_base_y + prrr_M_ta_t_2*prrr_q_in_base_x
-        # (prrr-P_c_2) force that accelerates joint 2, per unit
-        prrr_P_c_2_r0_x = -prrr_c_2*prrr_h_2_y - prrr_h_2_x*prrr_s_2
-        # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        prrr_d_P_1_t = axis_y_prrr_axes3_r1_x*prrr_d_G_t + axis_y_prrr_axes3_r1_y*prrr_d_G_xy
-        prrr_d_P_1_x = (
-        -axis_y_prrr_axes3_r1_y*prrr_d_G_xx - inv_prrr_r_2_r0_y*prrr_P_c_2_r0_x -
-            axis_y_prrr_axes3_r1_x*inv_prrr_platform_joint_offset_x*prrr_d_Gamma_3_x
-        )
-        prrr_d_P_1_in_base_x = (
-        axis_y_prrr_axes3_in_base_y*prrr_d_P_1_x - axis_y_prrr_axes3_in_base_x*prrr_d_P_1_t
-        )
-        prrr_d_P_1_in_base_y = (
-        -axis_y_prrr_axes3_in_base_x*prrr_d_P_1_x - axis_y_prrr_axes3_in_base_y*prrr_d_P_1_t
-        )
-        # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
-        prrr_M_ya_1_z = (
-        prrr_d_P_1_in_base_y*prrr_q_in_base_x - prrr_d_P_1_in_base_x*prrr_q_in_base_y
-        )
+        prrr_w_3_in_axes3_x = inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y
         # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
-        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
-        # (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prrr_dy_1_Gamma_1 = prrr_P_c_1_t + prrr_P_c_2_r0_x*prrr_dy_1_qdd_2
-        # (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        prrr_dy_1_Gamma_3_t = (
-        inv_prrr_platform_joint_offset_x*prrr_J_3_zz*(axis_y_prrr_axes3_r1_x +
-            prrr_dy_1_qdd_2*prrr_r_2_r0_x)
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_dy_1_qdd_2 = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        # (prrr-P_c_2) force that accelerates joint 2, per unit
+        prrr_P_c_2_in_axes0_x = -prrr_c_2*prrr_h_2_in_spec2_y - prrr_h_2_in_spec2_x*prrr_s_2
+        # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_in_axes3_x
+        prrr_d_Gamma_3_in_axes3_x = (
+        -prrr_h_3_in_spec3_y - inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2)
         )
-        prrr_dy_1_Gamma_3 = prrr_J_3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        # (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_dy_1_Gamma_3_t = (
+        prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
+            prrr_dy_1_qdd_2*prrr_r_2_in_axes3_x)
+        )
+        prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
         # (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prrr_dy_1_Gamma_2 = prrr_P_c_2_r0_x + prrr_Jc_2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        prrr_dy_1_Gamma_2 = (
+        prrr_P_c_2_in_axes0_x + prrr_Jc_2_in_axes2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t
+        )
+        # (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prrr_d_Gamma_2_in_axes3_x = (
+        -prrr_h_3_in_spec3_y - inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz -
+            prrr_d_Gamma_3_t_2)
+        )
+        # (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2
         # (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_dy_1_G_t = inv_prrr_platform_joint_offset_x*prrr_dy_1_Gamma_3
+        prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y
+        # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_d_G_in_axes3_xx = (
+        prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x
+        )
+        prrr_d_G_in_axes3_xy = (
+        prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y
+        )
+        # (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy
+        # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        )
+        prrr_Q_t = (
+        prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x - inv_prrr_r_2_in_axes3_y) - prrr_d_G_in_axes3_xx
+            - prrr_d_c_in_axes3_yy
+        )
+        prrr_Q_t_2 = 0.5*prrr_Q_t
+        prrr_Q_t_3 = axis_x_prrr_axes3_x*prrr_Q_t_2 + axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy
+        prrr_Q_t_4 = axis_y_prrr_axes3_x*prrr_Q_t_2 - axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy
+        prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2.0*axis_x_prrr_axes3_x*prrr_Q_t_3
+        prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3
+        prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2.0*axis_y_prrr_axes3_x*prrr_Q_t_4
         # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
         prrr_dy_1_P_1_t = (
-        axis_y_prrr_axes3_r1_x*prrr_dy_1_G_t +
-            axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y*(prrr_dy_1_G_t*prrr_r_2_r0_x -
-            prrr_dy_1_Gamma_2)
+        prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
+            inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
+            - prrr_dy_1_Gamma_2)
         )
         prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t
+        # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        prrr_d_P_1_in_axes3_y = (
+        -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x - prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y
+        )
+        prrr_d_P_1_in_axes3_x = (
+        -inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x - prrr_d_G_in_axes3_xx*prrr_e_1_in_axes3_x
+            - prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y
+        )
+        prrr_d_P_1_x = (
+        axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x + axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y
+        )
+        prrr_d_P_1_y = (
+        axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y - axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x
+        )
+        # (M_ta) coupling block of M
+        prrr_M_ta_t = prrr_Q_xy*prrr_q_x - prrr_Q_xx*prrr_q_y
+        prrr_M_ta_t_2 = prrr_Q_yy*prrr_q_x - prrr_Q_xy*prrr_q_y
+        # (M_aa) rotational block of M
+        prrr_M_aa_t = prrr_M_ta_t_2*prrr_q_x - prrr_M_ta_t*prrr_q_y
+        # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
+        prrr_M_ya_1_z = prrr_d_P_1_y*prrr_q_x - prrr_d_P_1_x*prrr_q_y
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (prrr_disc_2 >= 0.0) & (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
         sums = m.added(sums, leg, (
-        prrr_Q_t_5, prrr_Q_t_6, prrr_Q_t_7, prrr_M_ta_t, prrr_M_ta_t_2, prrr_M_aa_t,
+        prrr_Q_xx, prrr_Q_xy, prrr_Q_yy, prrr_M_ta_t, prrr_M_ta_t_2, prrr_M_aa_t,
         ))
-        out_M[_M_prrr[0][leg]] = prrr_d_P_1_in_base_x
-        out_M[_M_prrr[1][leg]] = prrr_d_P_1_in_base_x
-        out_M[_M_prrr[2][leg]] = prrr_d_P_1_in_base_y
-        out_M[_M_prrr[3][leg]] = prrr_d_P_1_in_base_y
+        # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+        out_M[_M_prrr[0][leg]] = prrr_d_P_1_x
+        out_M[_M_prrr[1][leg]] = prrr_d_P_1_x
+        out_M[_M_prrr[2][leg]] = prrr_d_P_1_y
+        out_M[_M_prrr[3][leg]] = prrr_d_P_1_y
+        # (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform
         out_M[_M_prrr[4][leg]] = prrr_M_ya_1_z
         out_M[_M_prrr[5][leg]] = prrr_M_ya_1_z
+        # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
         out_M[_M_prrr[6][leg]] = prrr_dy_1_P_1
-    (
-    total_prrr_xx, total_prrr_xy, total_prrr_yy, total_prrr_xz, total_prrr_yz, total_prrr_zz,
-    ) = sums
+    M_tt_prrr_xx, M_tt_prrr_xy, M_tt_prrr_yy, M_ta_prrr_xz, M_ta_prrr_yz, M_aa_prrr_zz = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_2_zz,
-            rrr_Jc_1_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_d_Gamma_2_t, rrr_d_Gamma_2_y, rrr_d_c_yy, rrr_d_phi_2_t, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_2_in_spec2_zz, rrr_Jc_1_in_axes1_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_d_Gamma_2_in_axes2_y, rrr_d_Gamma_2_t, rrr_d_c_in_axes2_yy,
+            rrr_d_phi_2_in_axes2_xy, rrr_h_2_in_spec2_y, rrr_joint2_offset_x,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2188,84 +2279,91 @@ def _run_M(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
         # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
         # (rrr-w_2) reciprocal vector 2
-        rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x
+        rrr_w_2_in_axes2_x = inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y
         # (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x
-        rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz - rrr_d_Gamma_2_t_2)
-        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y - rrr_d_Gamma_2_y*rrr_w_2_t
-        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
-        rrr_Q_t = (
-        inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t - inv_rrr_r_1_r0_y) - rrr_d_c_yy -
-            rrr_d_Gamma_2_x*rrr_w_2_t
+        rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x
+        rrr_d_Gamma_2_in_axes2_x = (
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2)
         )
-        rrr_Q_t_2 = 0.5*rrr_Q_t
-        rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy + axis_y_rrr_axes2_in_base_y*rrr_Q_t_2
-        rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 - axis_y_rrr_axes2_in_base_y*rrr_d_c_xy
-        rrr_Q_t_5 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3
-        rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 + axis_y_rrr_axes2_in_base_y*rrr_Q_t_4
-        rrr_Q_t_7 = rrr_d_c_yy + 2.0*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4
+        # (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        rrr_d_Gamma_1_in_axes2_x = (
+        -rrr_h_2_in_spec2_y - inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2)
+        )
+        # (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rrr_d_c_in_axes2_xy = (
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y - rrr_d_phi_2_in_axes2_xy -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x
+        )
+        # (rrr-Q) inertia of the leg at the connection point, without the mass gathered there
+        rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx
+        axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx
+        rrr_Q_t_3 = (
+        inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x + rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x -
+            inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x
+        )
+        rrr_Q_t_4 = 0.5*rrr_Q_t_3
+        rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 - axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy
+        rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2.0*axis_x_rrr_axes2_x*rrr_Q_t_5
+        rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5
+        rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2.0*axis_y_rrr_axes2_x*rrr_Q_t_6
         # (M_ta) coupling block of M
-        rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x
-        rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x
+        rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y
+        rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y
         # (M_aa) rotational block of M
-        rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x
+        rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_Q_t_5, rrr_Q_t_6, rrr_Q_t_7, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
+        rrr_Q_xx, rrr_Q_xy, rrr_Q_yy, rrr_M_ta_t, rrr_M_ta_t_2, rrr_M_aa_t,
         ))
-    total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz = sums
+    M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_prrr_xx - total_rrr_xx
-    M_tt_xy = total_prrr_xy + total_rrr_xy
-    M_tt_yy = m_star - total_prrr_yy - total_rrr_yy
+    M_tt_xx = M_tt_prrr_xx + M_tt_rrr_xx + m_star
+    M_tt_xy = M_tt_prrr_xy + M_tt_rrr_xy
+    M_tt_yy = M_tt_prrr_yy + M_tt_rrr_yy + m_star
     # (M_ta) coupling block of M
-    M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y
-    M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz
+    M_ta_xz = M_ta_prrr_xz + M_ta_rrr_xz - h_star_y
+    M_ta_yz = M_ta_prrr_yz + M_ta_rrr_yz + h_star_x
     # (M_aa) rotational block of M
-    M_aa_zz = -J_star_t_6 - total_prrr_zz - total_rrr_zz
+    M_aa_zz = J_star_zz + M_aa_prrr_zz + M_aa_rrr_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[4] = M_tt_xy
     out_M[5] = M_tt_yy
+    # (M_ta) coupling block of M
     out_M[2] = M_ta_xz
     out_M[8] = M_ta_xz
     out_M[6] = M_ta_yz
     out_M[9] = M_ta_yz
+    # (M_aa) rotational block of M
     out_M[10] = M_aa_zz
     return ok, (out_M,)
 
@@ -2276,7 +2374,7 @@ def _run_Z(m, X, V):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("Z")
-    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y = shared
+    Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2294,204 +2392,227 @@ def _run_Z(m, X, V):
     omega_z = V_2
     ok = True
     out_Z = m.zeros("Z")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (Z_p) centripetal force and weight of the platform
-    Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x
-    Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y
+    Z_p_x = W_p_xx*h_star_x - Z_p_t
+    Z_p_y = W_p_xx*h_star_y - Z_p_t_2
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y
+    Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
-            prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
+            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
             prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-            prrr_branch_2, prrr_f_1_o_x, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x, prrr_h_2_y,
-            prrr_h_3_x, prrr_h_3_y, prrr_joint3_offset_x, prrr_link2_mass,
-            prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            prrr_rho2_2_t, prrr_size,
+            prrr_branch_2, prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x, prrr_g_in_axes0_y,
+            prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
+            prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
+            prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+            prrr_w_3_in_axes3_y,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         prrr_yd_1 = V[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
-        # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        axis_y_prrr_axes3_in_base_x = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        axis_y_prrr_axes3_in_base_y = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
         # (prrr-S_dot) velocity of the connection point
-        prrr_S_dot_t = omega_z*prrr_q_in_base_y
-        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_t = omega_z*prrr_q_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_x
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        # (prrr-w_2) reciprocal vector 1
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_3) rate of joint 3
+        # (prrr-qd_2) rate of joint 2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        )
         prrr_qd_2 = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
+        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
-        # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_z = (
-        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
-        )
-        # (prrr-u_1) centripetal acceleration of the connection point
-        prrr_u_1_t = omega_z*prrr_S_dot_t_2
-        prrr_u_1_t_2 = omega_z*prrr_S_dot_t
         # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_t = prrr_qd_2*prrr_qd_2
+        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_in_axes3_z = (
+        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
+        )
         # (prrr-W_3) centripetal tensor of link 3
-        prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z
-        # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_x = (
-        -prrr_W_3_t*prrr_platform_joint_offset_x - prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
-        )
+        prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-u_1) centripetal acceleration of the connection point
-        prrr_u_1_tip_x = (
-        axis_y_prrr_axes3_in_base_x*prrr_u_1_t_2 - axis_y_prrr_axes3_in_base_y*prrr_u_1_t
-        )
-        prrr_u_1_tip_y = (
-        -axis_y_prrr_axes3_in_base_x*prrr_u_1_t - axis_y_prrr_axes3_in_base_y*prrr_u_1_t_2
+        prrr_u_1_x = -omega_z*prrr_S_dot_t_2
+        prrr_u_1_t = omega_z*prrr_S_dot_t
+        prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x + axis_y_prrr_axes3_x*prrr_u_1_t
+        prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x - axis_x_prrr_axes3_x*prrr_u_1_t
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_x = (
+        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_W_3_t*prrr_platform_joint_offset_x
         )
         # (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prrr_rel_o_x = prrr_u_1_tip_x - prrr_bias_x
-        prrr_rel_o_y = prrr_u_1_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3
-        # (prrr-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        prrr_qdd_2_o = inv_prrr_r_2_r0_y*prrr_rel_o_x
+        prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x
+        prrr_rel_o_in_axes3_y = (
+        prrr_u_1_in_axes3_y - prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
+        )
+        # (prrr-B_2_o) remainder of the acceleration tensor of link 2
+        prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x
         # (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        prrr_alpha_3_o_z = (
-        inv_prrr_platform_joint_offset_x*(prrr_rel_o_y + prrr_qdd_2_o*prrr_r_2_r0_x) -
-            prrr_qdd_2_o
+        prrr_alpha_3_o_in_axes3_z = (
+        prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y + prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) -
+            prrr_B_2_o_in_axes2_xy
+        )
+        # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
+        prrr_g_in_axes2_x = prrr_c_2*prrr_g_in_axes0_x + prrr_g_in_axes0_y*prrr_s_2
+        prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_y - prrr_g_in_axes0_x*prrr_s_2
+        prrr_f_2_o_in_axes2_x = (
+        prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y + prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x -
+            prrr_g_in_axes2_x*prrr_link2_mass
+        )
+        prrr_f_2_o_in_axes2_y = (
+        prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x -
+            prrr_g_in_axes2_y*prrr_link2_mass
         )
         # (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        prrr_acc_3_o_x = (
-        prrr_u_1_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x
+        prrr_acc_3_o_in_axes3_x = (
+        prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
         )
-        prrr_acc_3_o_y = (
-        prrr_u_1_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y
+        prrr_acc_3_o_in_axes3_y = (
+        prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
         )
         # (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        prrr_mu_3_o_z = (
-        prrr_J_3_zz*prrr_alpha_3_o_z + prrr_acc_3_o_y*prrr_h_3_x - prrr_acc_3_o_x*prrr_h_3_y
+        prrr_mu_3_o_in_axes3_z = (
+        prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
+            prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
+            prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y
         )
-        # (prrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prrr_g_r1_x = prrr_c_2*prrr_g_r0_x + prrr_g_r0_y*prrr_s_2
-        prrr_g_r1_y = prrr_c_2*prrr_g_r0_y - prrr_g_r0_x*prrr_s_2
         # (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prrr_mu_2_o_z = prrr_g_r1_x*prrr_h_2_y - prrr_J_2_zz*prrr_qdd_2_o - prrr_g_r1_y*prrr_h_2_x
+        prrr_mu_2_o_in_axes2_z = (
+        prrr_g_in_axes2_x*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz -
+            prrr_g_in_axes2_y*prrr_h_2_in_spec2_x
+        )
         # (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        prrr_N_2_o_z = prrr_mu_2_o_z + prrr_mu_3_o_z
-        # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_G_o_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_o_z
-        prrr_G_o_t_2 = inv_prrr_r_2_r0_y*(prrr_G_o_t*prrr_r_2_r0_x - prrr_N_2_o_z)
-        # (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prrr_c_o_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_o_z*prrr_h_3_y - prrr_G_o_t_2
-        prrr_c_o_y = prrr_W_3_t*prrr_h_3_y - prrr_G_o_t - prrr_alpha_3_o_z*prrr_h_3_x
-        # (prrr-U) velocity and gravity terms of the leg force
-        prrr_U_in_base_x = (
-        -axis_y_prrr_axes3_in_base_x*prrr_c_o_y - axis_y_prrr_axes3_in_base_y*prrr_c_o_x
-        )
-        prrr_U_in_base_y = (
-        axis_y_prrr_axes3_in_base_x*prrr_c_o_x - axis_y_prrr_axes3_in_base_y*prrr_c_o_y
-        )
-        # (Z_a) rotational part of Z
-        prrr_Z_a_t = prrr_U_in_base_y*prrr_q_in_base_x - prrr_U_in_base_x*prrr_q_in_base_y
-        # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        prrr_f_2_o_x = (
-        prrr_h_2_y*prrr_qdd_2_o - prrr_W_2_t*prrr_h_2_x - prrr_g_r1_x*prrr_link2_mass
-        )
-        prrr_f_2_o_y = (
-        -prrr_W_2_t*prrr_h_2_y - prrr_g_r1_y*prrr_link2_mass - prrr_h_2_x*prrr_qdd_2_o
-        )
+        prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z
         # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        prrr_T_1_o_x = prrr_c_2*prrr_f_2_o_x - prrr_f_1_o_x - prrr_f_2_o_y*prrr_s_2
+        prrr_T_1_o_in_axes0_x = (
+        prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x - prrr_f_2_o_in_axes2_y*prrr_s_2
+        )
+        # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y
+        prrr_G_o_in_axes3_x = (
+        inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_o_in_axes2_z)
+        )
+        # (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_o_in_axes3_x = (
+        prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y -
+            prrr_G_o_in_axes3_x
+        )
+        prrr_c_o_in_axes3_y = (
+        prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
+            prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x
+        )
+        # (prrr-U) velocity and gravity terms of the leg force
+        prrr_U_x = (
+        -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x - axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y
+        )
+        prrr_U_y = (
+        axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x - axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y
+        )
         # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
-        prrr_P_1_o_t = axis_y_prrr_axes3_r1_x*prrr_G_o_t + axis_y_prrr_axes3_r1_y*prrr_G_o_t_2
-        prrr_P_1_o = prrr_T_1_o_x - prrr_P_1_o_t
+        prrr_P_1_o_t = (
+        prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x + prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
+        )
+        prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t
+        # (Z_a) rotational part of Z
+        prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (prrr_disc_2 >= 0.0) & (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
         sums = m.added(sums, leg, (
-        prrr_U_in_base_x, prrr_U_in_base_y, prrr_Z_a_t,
+        prrr_U_x, prrr_U_y, prrr_Z_a_t,
         ))
+        # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
         out_Z[_Z_prrr[0][leg]] = prrr_P_1_o
-    total_prrr_x, total_prrr_y, total_prrr_z = sums
+    Z_t_prrr_x, Z_t_prrr_y, Z_a_prrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2500,128 +2621,120 @@ def _run_Z(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
+        rrr_qd_1_t_3 = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
-        )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_t = omega_z*rrr_S_dot_t_2
-        rrr_u_1_t_2 = omega_z*rrr_S_dot_t
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
+        rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
+        )
         # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
+        # (rrr-u_1) centripetal acceleration of the connection point
+        rrr_u_1_x = -omega_z*rrr_S_dot_t_2
+        rrr_u_1_t = omega_z*rrr_S_dot_t
+        rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x + axis_y_rrr_axes2_x*rrr_u_1_t
+        rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x - axis_x_rrr_axes2_x*rrr_u_1_t
         # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
+        rrr_bias_in_axes2_x = (
         -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        # (rrr-u_1) centripetal acceleration of the connection point
-        rrr_u_1_tip_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 - axis_y_rrr_axes2_in_base_y*rrr_u_1_t
-        )
-        rrr_u_1_tip_y = (
-        -axis_y_rrr_axes2_in_base_x*rrr_u_1_t - axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2
-        )
         # (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x
-        rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x
+        rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1_o) remainder of the acceleration tensor of link 1
+        rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x
         # (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrr_alpha_2_o_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_o_y + rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o
+        rrr_alpha_2_o_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y + rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_o_in_axes1_xy
         )
         # (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_o_x = (
-        rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
+        rrr_acc_2_o_in_axes2_x = (
+        rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
         )
-        rrr_acc_2_o_y = (
-        rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
+        rrr_acc_2_o_in_axes2_y = (
+        rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_o_z = (
-        rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x - rrr_acc_2_o_x*rrr_h_2_y
+        rrr_mu_2_o_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z + rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y
         )
         # (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_o_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1_o -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_o_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z
+        rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z
         # (rrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z
+        rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_o_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x
-            - rrr_N_1_o_z)
+        rrr_c_o_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z)
         )
-        rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x
+        rrr_c_o_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x
+        )
         # (rrr-U) velocity and gravity terms of the leg force
-        rrr_U_in_base_x = (
-        -axis_y_rrr_axes2_in_base_x*rrr_c_o_y - axis_y_rrr_axes2_in_base_y*rrr_c_o_x
-        )
-        rrr_U_in_base_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_o_x - axis_y_rrr_axes2_in_base_y*rrr_c_o_y
-        )
+        rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y
+        rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x - axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y
         # (Z_a) rotational part of Z
-        rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y
+        rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_U_in_base_x, rrr_U_in_base_y, rrr_Z_a_t,
+        rrr_U_x, rrr_U_y, rrr_Z_a_t,
         ))
-    total_rrr_x, total_rrr_y, total_rrr_z = sums
+    Z_t_rrr_x, Z_t_rrr_y, Z_a_rrr_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prrr_x + total_rrr_x
-    Z_t_y = Z_p_y + total_prrr_y + total_rrr_y
+    Z_t_x = Z_p_x + Z_t_prrr_x + Z_t_rrr_x
+    Z_t_y = Z_p_y + Z_t_prrr_y + Z_t_rrr_y
     # (Z_a) rotational part of Z
-    Z_a_z = total_prrr_z + total_rrr_z - Z_q_t
+    Z_a_z = Z_a_prrr_z + Z_a_rrr_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
+    # (Z_a) rotational part of Z
     out_Z[2] = Z_a_z
     return ok, (out_Z,)
 
@@ -2644,96 +2757,106 @@ def _run_H(m, X):
     out_H = m.zeros("H")
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx,
             prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
             prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
             prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
-        # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
-        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
-        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
-        # (prrr-w_2) reciprocal vector 1
-        prrr_w_2_t = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        prrr_w_2_t_2 = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx)
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
+        )
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_y = (
+        prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t
+        )
+        # (prrr-w_2) reciprocal vector 1
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
+        prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_w_2_x = (
+        -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x)
+        )
+        prrr_w_2_y = (
+        inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x)
         )
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
-        prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t
+        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (prrr_disc_2 >= 0.0) & (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_prrr[0][leg]] = 1.0
-        out_H[_H_prrr[1][leg]] = -prrr_w_2_t
-        out_H[_H_prrr[2][leg]] = prrr_w_2_t_2
+        # (prrr-w_2) reciprocal vector 1
+        out_H[_H_prrr[1][leg]] = prrr_w_2_x
+        out_H[_H_prrr[2][leg]] = prrr_w_2_y
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
-        out_H[_H_prrr[4][leg]] = prrr_dy_1_qdd_2
+        # (prrr-w_2) reciprocal vector 1
+        out_H[_H_prrr[4][leg]] = prrr_w_2_t
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
             rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -2742,42 +2865,44 @@ def _run_H(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        rrr_w_1_t = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        rrr_w_1_t_2 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = (
+        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
+        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = (
+        -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
+        )
+        rrr_w_1_y = (
+        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
         )
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
     return ok, (out_H,)
 
@@ -2788,7 +2913,7 @@ def _run_required(m, X, V, A):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("required")
-    J_star_t_6, gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    J_star_zz, gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2814,221 +2939,254 @@ def _run_required(m, X, V, A):
     ok = True
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y
-    h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_z*omega_z
+    W_p_xx = -omega_z*omega_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y
+    h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     # (f_p) inertia force of the platform less its weight
-    f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y
-    f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y
+    f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y
+    f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x
     # (mu_p) inertia moment of the platform less that of its weight
-    mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y
+    mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
-            prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
+            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
             prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-            prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x, prrr_h_2_y, prrr_h_3_x,
-            prrr_h_3_y, prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass,
-            prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
-            prrr_rho2_2_t, prrr_size,
+            prrr_branch_2, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+            prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
+            prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
+            prrr_platform_point_y, prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         prrr_yd_1 = V[[3][leg]]
         prrr_ydd_1 = A[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
-        # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        axis_y_prrr_axes3_in_base_x = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        axis_y_prrr_axes3_in_base_y = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
         # (prrr-S_dot) velocity of the connection point
-        prrr_S_dot_t = omega_z*prrr_q_in_base_y
-        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_t = omega_z*prrr_q_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_x
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        # (prrr-w_2) reciprocal vector 1
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        )
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
+        prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_3) rate of joint 3
+        # (prrr-qd_2) rate of joint 2
         prrr_qd_2 = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
-        )
-        # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_z = (
-        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
+        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
         # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_t = prrr_qd_2*prrr_qd_2
-        # (prrr-W_3) centripetal tensor of link 3
-        prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z
-        # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_x = (
-        -prrr_W_3_t*prrr_platform_joint_offset_x - prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
+        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_in_axes3_z = (
+        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
         )
-        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
-        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
-        # (prrr-w_2) reciprocal vector 1
-        prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y
-        prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y
-        # (prrr-H_a_2) moment of the column's unit force about the platform origin
-        prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t
+        # (prrr-W_3) centripetal tensor of link 3
+        prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-a_p) acceleration of the connection point without its centripetal part
-        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y
-        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x
+        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y
+        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x
         # (prrr-S_ddot) acceleration of the connection point
         prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
         prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
-        prrr_S_ddot_tip_x = (
-        axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x - axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y
+        prrr_S_ddot_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_ddot_x - axis_y_prrr_axes3_x*prrr_S_ddot_y
         )
-        prrr_S_ddot_tip_y = (
-        axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x + axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y
+        prrr_S_ddot_in_axes3_y = (
+        axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
+        )
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_x = (
+        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_W_3_t*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
-        prrr_rel_x = prrr_S_ddot_tip_x - prrr_bias_x - axis_y_prrr_axes3_r1_y*prrr_ydd_1
-        prrr_rel_y = (
-        prrr_S_ddot_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
-            axis_y_prrr_axes3_r1_x*prrr_ydd_1
+        prrr_rel_in_axes3_x = (
+        prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x - prrr_e_1_in_axes3_x*prrr_ydd_1
         )
-        # (prrr-qdd_2) acceleration of joint 2
-        prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x
-        # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
-        prrr_acc_3_x = (
-        prrr_S_ddot_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x
+        prrr_rel_in_axes3_y = (
+        prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         )
-        prrr_acc_3_y = (
-        prrr_S_ddot_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y
-        )
+        # (prrr-B_2) acceleration tensor of link 2
+        prrr_B_2_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
         # (prrr-alpha_3) angular acceleration of link 3
-        prrr_alpha_3_z = (
-        inv_prrr_platform_joint_offset_x*(prrr_rel_y + prrr_qdd_2*prrr_r_2_r0_x) - prrr_qdd_2
+        prrr_alpha_3_in_axes3_z = (
+        prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y + prrr_B_2_in_axes2_xy*prrr_r_2_in_axes3_x) -
+            prrr_B_2_in_axes2_xy
+        )
+        # (prrr-acc_1) acceleration of the reference point of link 1, less gravity
+        prrr_acc_1_in_axes0_x = prrr_ydd_1 - prrr_g_in_axes0_x
+        # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
+        prrr_acc_2_in_axes2_x = (
+        prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x - prrr_g_in_axes0_y*prrr_s_2
+        )
+        prrr_acc_2_in_axes2_y = (
+        prrr_g_in_axes0_x*prrr_s_2 - prrr_c_2*prrr_g_in_axes0_y - prrr_s_2*prrr_ydd_1
+        )
+        # (prrr-f_2) inertia force of link 2 less its weight
+        prrr_f_2_in_axes2_x = (
+        prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_y + prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x +
+            prrr_acc_2_in_axes2_x*prrr_link2_mass
+        )
+        prrr_f_2_in_axes2_y = (
+        prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y + prrr_acc_2_in_axes2_y*prrr_link2_mass -
+            prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_x
+        )
+        # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
+        prrr_acc_3_in_axes3_x = (
+        prrr_S_ddot_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
+        )
+        prrr_acc_3_in_axes3_y = (
+        prrr_S_ddot_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
         )
         # (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        prrr_mu_3_z = (
-        prrr_J_3_zz*prrr_alpha_3_z + prrr_acc_3_y*prrr_h_3_x - prrr_acc_3_x*prrr_h_3_y
+        prrr_mu_3_in_axes3_z = (
+        prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z + prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x -
+            prrr_acc_3_in_axes3_x*prrr_h_3_in_spec3_y
         )
-        # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
-        prrr_acc_2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_r0_x - prrr_g_r0_y*prrr_s_2
-        prrr_acc_2_y = prrr_g_r0_x*prrr_s_2 - prrr_c_2*prrr_g_r0_y - prrr_s_2*prrr_ydd_1
         # (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prrr_mu_2_z = prrr_acc_2_y*prrr_h_2_x - prrr_J_2_zz*prrr_qdd_2 - prrr_acc_2_x*prrr_h_2_y
+        prrr_mu_2_in_axes2_z = (
+        prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x - prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz -
+            prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y
+        )
         # (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        prrr_N_2_z = prrr_mu_2_z + prrr_mu_3_z
-        # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_G_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_z
-        prrr_G_t_2 = inv_prrr_r_2_r0_y*(prrr_G_t*prrr_r_2_r0_x - prrr_N_2_z)
-        # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
-        prrr_c_x = prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_z*prrr_h_3_y - prrr_G_t_2
-        prrr_c_y = prrr_W_3_t*prrr_h_3_y - prrr_G_t - prrr_alpha_3_z*prrr_h_3_x
-        prrr_c_in_base_x = (
-        axis_y_prrr_axes3_in_base_x*prrr_c_y + axis_y_prrr_axes3_in_base_y*prrr_c_x
-        )
-        prrr_c_in_base_y = (
-        axis_y_prrr_axes3_in_base_y*prrr_c_y - axis_y_prrr_axes3_in_base_x*prrr_c_x
-        )
-        # (R_a) moment that actuators and external wrench must give
-        prrr_R_a_t = prrr_c_in_base_y*prrr_q_in_base_x - prrr_c_in_base_x*prrr_q_in_base_y
-        # (prrr-acc_1) acceleration of the reference point of link 1, less gravity
-        prrr_acc_1_x = prrr_ydd_1 - prrr_g_r0_x
-        # (prrr-f_2) inertia force of link 2 less its weight
-        prrr_f_2_x = prrr_acc_2_x*prrr_link2_mass + prrr_h_2_y*prrr_qdd_2 - prrr_W_2_t*prrr_h_2_x
-        prrr_f_2_y = prrr_acc_2_y*prrr_link2_mass - prrr_W_2_t*prrr_h_2_y - prrr_h_2_x*prrr_qdd_2
+        prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z
         # (prrr-T_1) inertia force of the links from 1 outwards, the last link left out
-        prrr_T_1_x = prrr_acc_1_x*prrr_link1_mass + prrr_c_2*prrr_f_2_x - prrr_f_2_y*prrr_s_2
+        prrr_T_1_in_axes0_x = (
+        prrr_acc_1_in_axes0_x*prrr_link1_mass + prrr_c_2*prrr_f_2_in_axes2_x -
+            prrr_f_2_in_axes2_y*prrr_s_2
+        )
+        # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y
+        prrr_G_in_axes3_x = (
+        inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z)
+        )
+        # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
+        prrr_c_in_axes3_x = (
+        prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y -
+            prrr_G_in_axes3_x
+        )
+        prrr_c_in_axes3_y = (
+        prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
+            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x
+        )
+        prrr_c_x = axis_x_prrr_axes3_x*prrr_c_in_axes3_x + axis_y_prrr_axes3_x*prrr_c_in_axes3_y
+        prrr_c_y = axis_x_prrr_axes3_x*prrr_c_in_axes3_y - axis_y_prrr_axes3_x*prrr_c_in_axes3_x
         # (prrr-P_1) inertia and weight of the leg along the extra freedom of joint 1
-        prrr_P_1_t = axis_y_prrr_axes3_r1_x*prrr_G_t + axis_y_prrr_axes3_r1_y*prrr_G_t_2
-        prrr_P_1 = prrr_T_1_x - prrr_P_1_t
+        prrr_P_1_t = prrr_G_in_axes3_x*prrr_e_1_in_axes3_x + prrr_G_in_axes3_y*prrr_e_1_in_axes3_y
+        prrr_P_1 = prrr_T_1_in_axes0_x - prrr_P_1_t
+        # (R_a) moment that actuators and external wrench must give
+        prrr_R_a_t = prrr_c_x*prrr_q_y - prrr_c_y*prrr_q_x
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
+        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (prrr_disc_2 >= 0.0) & (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
         sums = m.added(sums, leg, (
-        prrr_c_in_base_x, prrr_c_in_base_y, prrr_R_a_t,
+        prrr_c_x, prrr_c_y, prrr_R_a_t,
         ))
+        # (prrr-P_1) inertia and weight of the leg along the extra freedom of joint 1
         out_required[_required_prrr[0][leg]] = prrr_P_1
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_prrr[0][leg]] = 1.0
-        out_H[_H_prrr[1][leg]] = -prrr_w_2_t
-        out_H[_H_prrr[2][leg]] = prrr_w_2_t_2
+        # (prrr-w_2) reciprocal vector 1
+        out_H[_H_prrr[1][leg]] = prrr_w_2_x
+        out_H[_H_prrr[2][leg]] = prrr_w_2_y
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
-        out_H[_H_prrr[4][leg]] = prrr_dy_1_qdd_2
-    total_prrr_x, total_prrr_y, total_prrr_z = sums
+        # (prrr-w_2) reciprocal vector 1
+        out_H[_H_prrr[4][leg]] = prrr_w_2_t
+    R_t_t, R_t_t_2, R_a_prrr_z = sums
     sums = [0.0] * 3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3037,131 +3195,131 @@ def _run_required(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
         )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
-        # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        rrr_S_ddot_tip_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
-        )
-        rrr_S_ddot_tip_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
-        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_x = (
-        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
-        )
-        rrr_acc_2_y = (
-        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1) acceleration tensor of link 1
+        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        rrr_alpha_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_in_axes1_xy
+        )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_in_axes2_x = (
+        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
+        )
+        rrr_acc_2_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        rrr_mu_2_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
+        )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
-            rrr_N_1_z)
+        rrr_c_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
-        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
-        rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y + axis_y_rrr_axes2_in_base_y*rrr_c_x
-        rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y - axis_y_rrr_axes2_in_base_x*rrr_c_x
+        rrr_c_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        )
+        rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_in_axes2_y
+        rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_in_axes2_x
         # (R_a) moment that actuators and external wrench must give
-        rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y
+        rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         sums = m.added(sums, leg, (
-        rrr_c_in_base_x, rrr_c_in_base_y, rrr_R_a_t,
+        rrr_c_x, rrr_c_y, rrr_R_a_t,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
-    total_rrr_x, total_rrr_y, total_rrr_z = sums
+    R_t_t_3, R_t_t_4, R_a_rrr_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_prrr_x - total_rrr_x
-    R_t_y = f_p_y - total_prrr_y - total_rrr_y
+    R_t_x = f_p_x - R_t_t - R_t_t_3
+    R_t_y = f_p_y - R_t_t_2 - R_t_t_4
     # (R_a) moment that actuators and external wrench must give
-    R_a_z = mu_p_z - total_prrr_z - total_rrr_z
+    R_a_z = R_a_prrr_z + R_a_rrr_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
+    # (R_a) moment that actuators and external wrench must give
     out_required[2] = R_a_z
     return ok, (out_required, out_H,)
 
@@ -3185,7 +3343,7 @@ def _run_inverse_kinematics(m, X):
     out_q = m.zeros("q")
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx,
             prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
             prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
             prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t,
@@ -3198,46 +3356,54 @@ def _run_inverse_kinematics(m, X):
         prrr_S_y = (
         t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x - prrr_base_point_y
         )
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         # (prrr-q_2) displacement of joint 2
+        inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_q_2 = (
         atan2(inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2),
             -inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2))
         )
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        )
         # (prrr-q_3) displacement of joint 3
         prrr_q_3 = (
-        atan2(-inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2,
-            inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x)
+        atan2(-inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2,
+            inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x)
         )
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
             (prrr_disc_2 >= 0.0))
         )
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_q[_q_prrr[0][leg]] = prrr_y_1_extra
+        # (prrr-q_2) displacement of joint 2
         out_q[_q_prrr[1][leg]] = prrr_q_2
+        # (prrr-q_3) displacement of joint 3
         out_q[_q_prrr[2][leg]] = prrr_q_3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
             rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
             rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
             rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
@@ -3246,14 +3412,14 @@ def _run_inverse_kinematics(m, X):
         rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
         rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3262,25 +3428,26 @@ def _run_inverse_kinematics(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         # (rrr-q_1) displacement of joint 1
+        inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_q_1 = (
         atan2(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
             inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1))
         )
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
         # (rrr-q_2) displacement of joint 2
         rrr_q_2 = (
-        atan2(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x)
+        atan2(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x)
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
+        # (rrr-q_1) displacement of joint 1
         out_q[_q_rrr[0][leg]] = rrr_q_1
+        # (rrr-q_2) displacement of joint 2
         out_q[_q_rrr[1][leg]] = rrr_q_2
     return ok, (out_q,)
 
@@ -3310,106 +3477,115 @@ def _run_joint_rates(m, X, V):
     out_qd = m.zeros("qd")
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_Kd_2_t_2,
-            prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-            prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
-            prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
-            prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx,
+            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+            prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
+            prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+            prrr_w_3_in_axes3_y,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         prrr_yd_1 = V[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
-        # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        axis_y_prrr_axes3_in_base_x = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        axis_y_prrr_axes3_in_base_y = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
         # (prrr-S_dot) velocity of the connection point
-        prrr_S_dot_x = t_dot_x - omega_z*prrr_q_in_base_y
-        prrr_S_dot_y = t_dot_y + omega_z*prrr_q_in_base_x
+        prrr_S_dot_x = t_dot_x - omega_z*prrr_q_y
+        prrr_S_dot_y = t_dot_y + omega_z*prrr_q_x
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_3) rate of joint 3
-        prrr_qd_2 = (
-        (axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)/prrr_r_2_r0_y
+        # (prrr-qd_2) rate of joint 2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
         )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        )
+        prrr_qd_2 = (
+        -(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)/prrr_r_2_in_axes3_y
+        )
+        # (prrr-qd_3) rate of joint 3
         prrr_qd_3 = (
-        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*(prrr_c_3*prrr_r_2_x +
-            prrr_r_2_t*prrr_s_3))
+        prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*(prrr_c_3*prrr_r_2_in_axes2_x +
+            prrr_r_2_t*prrr_s_3_t))
         )
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (prrr_disc_2 >= 0.0) & (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qd[_qd_prrr[0][leg]] = prrr_yd_1
-        out_qd[_qd_prrr[1][leg]] = -prrr_qd_2
+        # (prrr-qd_2) rate of joint 2
+        out_qd[_qd_prrr[1][leg]] = prrr_qd_2
+        # (prrr-qd_3) rate of joint 3
         out_qd[_qd_prrr[2][leg]] = prrr_qd_3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3418,50 +3594,46 @@ def _run_joint_rates(m, X, V):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
-        )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y
-        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y
+        rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y
+        rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
+        rrr_qd_1_t_3 = (
+        (axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y
         )
+        # (rrr-qd_2) rate of joint 2
         rrr_qd_2 = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
-            rrr_r_1_t*rrr_s_2))
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1
+        # (rrr-qd_1) rate of joint 1
+        out_qd[_qd_rrr[0][leg]] = -rrr_qd_1_t_3
+        # (rrr-qd_2) rate of joint 2
         out_qd[_qd_rrr[1][leg]] = rrr_qd_2
     return ok, (out_qd,)
 
@@ -3498,136 +3670,146 @@ def _run_joint_accelerations(m, X, V, A):
     out_qdd = m.zeros("qdd")
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_Kd_2_t_2,
-            prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-            prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
-            prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
-            prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx,
+            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+            prrr_base_point_y, prrr_branch_2, prrr_joint3_offset_x, prrr_platform_joint_offset_x,
+            prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+            prrr_w_3_in_axes3_y,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         prrr_yd_1 = V[[3][leg]]
         prrr_ydd_1 = A[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
-        # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        axis_y_prrr_axes3_in_base_x = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        axis_y_prrr_axes3_in_base_y = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
         # (prrr-S_dot) velocity of the connection point
-        prrr_S_dot_t = omega_z*prrr_q_in_base_y
-        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_t = omega_z*prrr_q_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_x
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        # (prrr-w_2) reciprocal vector 1
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_3) rate of joint 3
-        prrr_qd_2 = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
+        # (prrr-qd_2) rate of joint 2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
         )
-        # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_z = (
-        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        )
+        prrr_qd_2 = (
+        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
         # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_t = prrr_qd_2*prrr_qd_2
-        # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_x = (
-        -prrr_omega_3_z*prrr_omega_3_z*prrr_platform_joint_offset_x -
-            prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
+        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_in_axes3_z = (
+        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
         )
         # (prrr-a_p) acceleration of the connection point without its centripetal part
-        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y
-        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x
+        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y
+        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x
         # (prrr-S_ddot) acceleration of the connection point
         prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
         prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
-        # (prrr-rel) acceleration of the connection point left to the joint accelerations
-        prrr_rel_x = (
-        axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x - prrr_bias_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y - axis_y_prrr_axes3_r1_y*prrr_ydd_1
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_x = (
+        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x
         )
-        prrr_rel_y = (
-        axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x + axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y +
-            prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 - axis_y_prrr_axes3_r1_x*prrr_ydd_1
+        # (prrr-rel) acceleration of the connection point left to the joint accelerations
+        prrr_rel_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_ddot_x - prrr_bias_in_axes3_x -
+            axis_y_prrr_axes3_x*prrr_S_ddot_y - prrr_e_1_in_axes3_x*prrr_ydd_1
+        )
+        prrr_rel_in_axes3_y = (
+        axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x -
+            prrr_e_1_in_axes3_y*prrr_ydd_1 - prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         )
         # (prrr-qdd_2) acceleration of joint 2
-        prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x
-        prrr_qdd_3 = inv_prrr_platform_joint_offset_x*(prrr_rel_y + prrr_qdd_2*prrr_r_2_r0_x)
+        prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
+        # (prrr-qdd_3) acceleration of joint 3
+        prrr_qdd_3 = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y + prrr_qdd_2_t*prrr_r_2_in_axes3_x)
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (prrr_disc_2 >= 0.0) & (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qdd[_qdd_prrr[0][leg]] = prrr_ydd_1
-        out_qdd[_qdd_prrr[1][leg]] = -prrr_qdd_2
+        # (prrr-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_prrr[1][leg]] = -prrr_qdd_2_t
+        # (prrr-qdd_3) acceleration of joint 3
         out_qdd[_qdd_prrr[2][leg]] = prrr_qdd_3
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
-            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
-            rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-            rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+            rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3636,79 +3818,76 @@ def _run_joint_accelerations(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 - rrr_base_frame_xx*rrr_qd_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 - rrr_base_frame_yx*rrr_qd_1_t
+        rrr_qd_1_t_3 = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3
         )
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
-        rrr_rel_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y +
+        # (rrr-rel) acceleration of the connection point left to the joint accelerations
+        rrr_rel_in_axes2_x = (
+        axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        )
+        rrr_rel_in_axes2_y = (
+        axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x -
             rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
         )
         # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x)
+        rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
+        # (rrr-qdd_2) acceleration of joint 2
+        rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_qdd_1_t*rrr_r_1_in_axes2_x)
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1
+        # (rrr-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_rrr[0][leg]] = -rrr_qdd_1_t
+        # (rrr-qdd_2) acceleration of joint 2
         out_qdd[_qdd_rrr[1][leg]] = rrr_qdd_2
     return ok, (out_qdd,)
 
@@ -3747,186 +3926,208 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_platform_joint_offset_x, prrr_J_2_zz,
-            prrr_J_3_zz, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
+            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
             prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-            prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y, prrr_h_2_x, prrr_h_2_y, prrr_h_3_x,
-            prrr_h_3_y, prrr_joint3_offset_x, prrr_link3_mass, prrr_platform_joint_offset_x,
-            prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+            prrr_branch_2, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+            prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
+            prrr_link3_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
+            prrr_platform_point_y, prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         prrr_yd_1 = V[[3][leg]]
         prrr_ydd_1 = A[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_x = prrr_c_3*prrr_r_2_x + prrr_r_2_t*prrr_s_3
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_r_2_t
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
-        # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        axis_y_prrr_axes3_in_base_x = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_xy - axis_y_prrr_axes3_r1_y*prrr_base_frame_xx
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        axis_y_prrr_axes3_in_base_y = (
-        axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
         )
-        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
         # (prrr-S_dot) velocity of the connection point
-        prrr_S_dot_t = omega_z*prrr_q_in_base_y
-        prrr_S_dot_t_2 = omega_z*prrr_q_in_base_x
+        prrr_S_dot_t = omega_z*prrr_q_y
+        prrr_S_dot_t_2 = omega_z*prrr_q_x
         prrr_S_dot_x = t_dot_x - prrr_S_dot_t
         prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
+        prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
+        # (prrr-w_2) reciprocal vector 1
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        axis_y_prrr_axes3_x = (
+        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        )
+        axis_x_prrr_axes3_x = (
+        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        )
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
+        prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
+        prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
-        # (prrr-qd_3) rate of joint 3
+        # (prrr-qd_2) rate of joint 2
         prrr_qd_2 = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_y)
-        )
-        # (prrr-omega_3) angular velocity of link 3
-        prrr_omega_3_z = (
-        inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_in_base_x*prrr_S_dot_rest_x +
-            axis_y_prrr_axes3_in_base_y*prrr_S_dot_rest_y + prrr_qd_2*prrr_r_2_r0_x) - prrr_qd_2
+        -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)
         )
         # (prrr-W_2) centripetal tensor of link 2
-        prrr_W_2_t = prrr_qd_2*prrr_qd_2
-        # (prrr-W_3) centripetal tensor of link 3
-        prrr_W_3_t = prrr_omega_3_z*prrr_omega_3_z
-        # (prrr-bias) acceleration of the connection point at zero joint accelerations
-        prrr_bias_x = (
-        -prrr_W_3_t*prrr_platform_joint_offset_x - prrr_W_2_t*prrr_c_3*prrr_joint3_offset_x
+        prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2
+        # (prrr-omega_3) angular velocity of link 3
+        prrr_omega_3_in_axes3_z = (
+        prrr_qd_2 + prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x)
         )
-        # (prrr-w_2) reciprocal vector 1
-        prrr_w_2_t = axis_y_prrr_axes3_in_base_y*inv_prrr_r_2_r0_y
-        prrr_w_2_t_2 = axis_y_prrr_axes3_in_base_x*inv_prrr_r_2_r0_y
+        # (prrr-W_3) centripetal tensor of link 3
+        prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z
         # (prrr-a_p) acceleration of the connection point without its centripetal part
-        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_in_base_y
-        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_in_base_x
+        prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y
+        prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x
         # (prrr-S_ddot) acceleration of the connection point
         prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2
         prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t
-        prrr_S_ddot_tip_x = (
-        axis_y_prrr_axes3_in_base_y*prrr_S_ddot_x - axis_y_prrr_axes3_in_base_x*prrr_S_ddot_y
+        prrr_S_ddot_in_axes3_x = (
+        axis_x_prrr_axes3_x*prrr_S_ddot_x - axis_y_prrr_axes3_x*prrr_S_ddot_y
         )
-        prrr_S_ddot_tip_y = (
-        axis_y_prrr_axes3_in_base_x*prrr_S_ddot_x + axis_y_prrr_axes3_in_base_y*prrr_S_ddot_y
+        prrr_S_ddot_in_axes3_y = (
+        axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x
+        )
+        # (prrr-bias) acceleration of the connection point at zero joint accelerations
+        prrr_bias_in_axes3_x = (
+        prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+            prrr_W_3_t*prrr_platform_joint_offset_x
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
-        prrr_rel_x = prrr_S_ddot_tip_x - prrr_bias_x - axis_y_prrr_axes3_r1_y*prrr_ydd_1
-        prrr_rel_y = (
-        prrr_S_ddot_tip_y + prrr_W_2_t*prrr_joint3_offset_x*prrr_s_3 -
-            axis_y_prrr_axes3_r1_x*prrr_ydd_1
+        prrr_rel_in_axes3_x = (
+        prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x - prrr_e_1_in_axes3_x*prrr_ydd_1
         )
-        # (prrr-qdd_2) acceleration of joint 2
-        prrr_qdd_2 = inv_prrr_r_2_r0_y*prrr_rel_x
-        # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
-        prrr_acc_3_x = (
-        prrr_S_ddot_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
-            axis_y_prrr_axes3_in_base_y*gravity_x
+        prrr_rel_in_axes3_y = (
+        prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t
         )
-        prrr_acc_3_y = (
-        prrr_S_ddot_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
-            axis_y_prrr_axes3_in_base_y*gravity_y
-        )
+        # (prrr-B_2) acceleration tensor of link 2
+        prrr_B_2_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x
         # (prrr-alpha_3) angular acceleration of link 3
-        prrr_alpha_3_z = (
-        inv_prrr_platform_joint_offset_x*(prrr_rel_y + prrr_qdd_2*prrr_r_2_r0_x) - prrr_qdd_2
-        )
-        # (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        prrr_mu_3_z = (
-        prrr_J_3_zz*prrr_alpha_3_z + prrr_acc_3_y*prrr_h_3_x - prrr_acc_3_x*prrr_h_3_y
+        prrr_alpha_3_in_axes3_z = (
+        prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y + prrr_B_2_in_axes2_xy*prrr_r_2_in_axes3_x) -
+            prrr_B_2_in_axes2_xy
         )
         # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
-        prrr_acc_2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_r0_x - prrr_g_r0_y*prrr_s_2
-        prrr_acc_2_y = prrr_g_r0_x*prrr_s_2 - prrr_c_2*prrr_g_r0_y - prrr_s_2*prrr_ydd_1
+        prrr_acc_2_in_axes2_x = (
+        prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x - prrr_g_in_axes0_y*prrr_s_2
+        )
+        prrr_acc_2_in_axes2_y = (
+        prrr_g_in_axes0_x*prrr_s_2 - prrr_c_2*prrr_g_in_axes0_y - prrr_s_2*prrr_ydd_1
+        )
+        # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
+        prrr_acc_3_in_axes3_x = (
+        prrr_S_ddot_in_axes3_x + axis_y_prrr_axes3_x*gravity_y - axis_x_prrr_axes3_x*gravity_x
+        )
+        prrr_acc_3_in_axes3_y = (
+        prrr_S_ddot_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
+        )
+        # (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points
+        prrr_mu_3_in_axes3_z = (
+        prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z + prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x -
+            prrr_acc_3_in_axes3_x*prrr_h_3_in_spec3_y
+        )
         # (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prrr_mu_2_z = prrr_acc_2_y*prrr_h_2_x - prrr_J_2_zz*prrr_qdd_2 - prrr_acc_2_x*prrr_h_2_y
+        prrr_mu_2_in_axes2_z = (
+        prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x - prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz -
+            prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y
+        )
         # (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        prrr_N_2_z = prrr_mu_2_z + prrr_mu_3_z
+        prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z
         # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_G_t = inv_prrr_platform_joint_offset_x*prrr_mu_3_z
+        prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y
         # (prrr-c) leg force on the platform without actuation and without the mass at the connection point
-        prrr_c_x = (
-        prrr_W_3_t*prrr_h_3_x + prrr_alpha_3_z*prrr_h_3_y -
-            inv_prrr_r_2_r0_y*(prrr_G_t*prrr_r_2_r0_x - prrr_N_2_z)
+        prrr_c_in_axes3_x = (
+        prrr_W_3_t*prrr_h_3_in_spec3_x + prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y -
+            inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z)
         )
-        prrr_c_y = prrr_W_3_t*prrr_h_3_y - prrr_G_t - prrr_alpha_3_z*prrr_h_3_x
+        prrr_c_in_axes3_y = (
+        prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
+            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x
+        )
         # (prrr-c_true) leg force on the platform without actuation, the last link's mass included
-        prrr_c_true_x = prrr_c_x - prrr_acc_3_x*prrr_link3_mass
-        prrr_c_true_y = prrr_c_y - prrr_acc_3_y*prrr_link3_mass
-        prrr_c_true_in_base_x = (
-        axis_y_prrr_axes3_in_base_x*prrr_c_true_y + axis_y_prrr_axes3_in_base_y*prrr_c_true_x
+        prrr_c_true_in_axes3_x = prrr_c_in_axes3_x - prrr_acc_3_in_axes3_x*prrr_link3_mass
+        prrr_c_true_in_axes3_y = prrr_c_in_axes3_y - prrr_acc_3_in_axes3_y*prrr_link3_mass
+        prrr_c_true_x = (
+        axis_x_prrr_axes3_x*prrr_c_true_in_axes3_x + axis_y_prrr_axes3_x*prrr_c_true_in_axes3_y
         )
-        prrr_c_true_in_base_y = (
-        axis_y_prrr_axes3_in_base_y*prrr_c_true_y - axis_y_prrr_axes3_in_base_x*prrr_c_true_x
+        prrr_c_true_y = (
+        axis_x_prrr_axes3_x*prrr_c_true_in_axes3_y - axis_y_prrr_axes3_x*prrr_c_true_in_axes3_x
         )
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (prrr_disc_2 >= 0.0) & (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (prrr_disc_2 >= 0.0) & (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
-        out_leg_force[_leg_force_prrr[0][leg]] = prrr_c_true_in_base_x
-        out_leg_force[_leg_force_prrr[1][leg]] = prrr_c_true_in_base_y
-        out_drive[_drive_prrr[0][leg]] = -prrr_w_2_t
-        out_drive[_drive_prrr[1][leg]] = prrr_w_2_t_2
+        # (prrr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_prrr[0][leg]] = prrr_c_true_x
+        out_leg_force[_leg_force_prrr[1][leg]] = prrr_c_true_y
+        # (prrr-w_2) reciprocal vector 1
+        out_drive[_drive_prrr[0][leg]] = prrr_w_2_x
+        out_drive[_drive_prrr[1][leg]] = prrr_w_2_y
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_platform_joint_offset_x, rrr_J_1_zz,
-            rrr_J_2_zz, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy,
-            rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y,
-            rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x, rrr_h_1_y, rrr_h_2_x, rrr_h_2_y,
-            rrr_joint2_offset_x, rrr_link2_mass, rrr_platform_joint_offset_x,
-            rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+            rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
+            rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y, rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y,
+            rrr_joint2_offset_x, rrr_link2_mass, rrr_mu_1_t, rrr_mu_1_t_2,
+            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+            rrr_size, rrr_w_2_in_axes2_y,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -3935,124 +4136,122 @@ def _run_legs(m, X, V, A):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        axis_y_rrr_axes2_in_base_x = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        axis_y_rrr_axes2_in_base_y = (
-        axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
-        )
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
         # (rrr-S_dot) velocity of the connection point
-        rrr_S_dot_t = omega_z*rrr_q_in_base_y
-        rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x
+        rrr_S_dot_t = omega_z*rrr_q_y
+        rrr_S_dot_t_2 = omega_z*rrr_q_x
         rrr_S_dot_x = t_dot_x - rrr_S_dot_t
         rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y
-        # (rrr-qd_2) rate of joint 2
-        rrr_qd_1 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)
-        )
-        # (rrr-omega_2) angular velocity of link 2
-        rrr_omega_2_z = (
-        inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2
+        rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t
+        axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y
+        # (rrr-qd_1) rate of joint 1
+        rrr_qd_1_t = (
+        inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x - axis_y_rrr_axes2_x*rrr_S_dot_y)
         )
         # (rrr-W_1) centripetal tensor of link 1
-        rrr_W_1_t = rrr_qd_1*rrr_qd_1
-        # (rrr-W_2) centripetal tensor of link 2
-        rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z
-        # (rrr-bias) acceleration of the connection point at zero joint accelerations
-        rrr_bias_x = (
-        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
+        rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t
+        # (rrr-omega_2) angular velocity of link 2
+        rrr_omega_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x +
+            rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t
         )
-        # (rrr-w_1) reciprocal vector 1
-        rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y
-        rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y
+        # (rrr-W_2) centripetal tensor of link 2
+        rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z
         # (rrr-a_p) acceleration of the connection point without its centripetal part
-        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y
-        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x
+        rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y
+        rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x
         # (rrr-S_ddot) acceleration of the connection point
         rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2
         rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t
-        rrr_S_ddot_tip_x = (
-        axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y
-        )
-        rrr_S_ddot_tip_y = (
-        axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x + axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - axis_y_rrr_axes2_x*rrr_S_ddot_y
+        rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y + axis_y_rrr_axes2_x*rrr_S_ddot_x
+        # (rrr-bias) acceleration of the connection point at zero joint accelerations
+        rrr_bias_in_axes2_x = (
+        -rrr_W_2_t*rrr_platform_joint_offset_x - rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x
         )
         # (rrr-rel) acceleration of the connection point left to the joint accelerations
-        rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x
-        rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
-        # (rrr-qdd_1) acceleration of joint 1
-        rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x
-        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
-        rrr_acc_2_x = (
-        rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x
-        )
-        rrr_acc_2_y = (
-        rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y
-        )
+        rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x
+        rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2
+        # (rrr-B_1) acceleration tensor of link 1
+        rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x
         # (rrr-alpha_2) angular acceleration of link 2
-        rrr_alpha_2_z = (
-        inv_rrr_platform_joint_offset_x*(rrr_rel_y + rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1
+        rrr_alpha_2_in_axes2_z = (
+        rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y + rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) -
+            rrr_B_1_in_axes1_xy
+        )
+        # (rrr-acc_2) acceleration of the reference point of link 2, less gravity
+        rrr_acc_2_in_axes2_x = (
+        rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y - axis_x_rrr_axes2_x*gravity_x
+        )
+        rrr_acc_2_in_axes2_y = (
+        rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y - axis_y_rrr_axes2_x*gravity_x
         )
         # (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x - rrr_acc_2_x*rrr_h_2_y
+        rrr_mu_2_in_axes2_z = (
+        rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z + rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x -
+            rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y
+        )
         # (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rrr_mu_1_z = (
-        rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) - rrr_J_1_zz*rrr_qdd_1 -
-            rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)
+        rrr_mu_1_in_axes1_z = (
+        rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
+            rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz - rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)
         )
         # (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-        rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z
+        rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z
         # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z
+        rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y
         # (rrr-c) leg force on the platform without actuation and without the mass at the connection point
-        rrr_c_x = (
-        rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x -
-            rrr_N_1_z)
+        rrr_c_in_axes2_x = (
+        rrr_W_2_t*rrr_h_2_in_spec2_x + rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z)
         )
-        rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x
+        rrr_c_in_axes2_y = (
+        rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x
+        )
         # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
-        rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass
-        rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass
-        rrr_c_true_in_base_x = (
-        axis_y_rrr_axes2_in_base_x*rrr_c_true_y + axis_y_rrr_axes2_in_base_y*rrr_c_true_x
+        rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass
+        rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass
+        rrr_c_true_x = (
+        axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x + axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y
         )
-        rrr_c_true_in_base_y = (
-        axis_y_rrr_axes2_in_base_y*rrr_c_true_y - axis_y_rrr_axes2_in_base_x*rrr_c_true_x
+        rrr_c_true_y = (
+        axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y - axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
-            >= 0.0) & (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            >= 0.0) & (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
-        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_in_base_x
-        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_in_base_y
-        out_drive[_drive_rrr[0][leg]] = -rrr_w_1_t
-        out_drive[_drive_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_rrr[0][leg]] = rrr_c_true_x
+        out_leg_force[_leg_force_rrr[1][leg]] = rrr_c_true_y
+        # (rrr-w_1) reciprocal vector 1
+        out_drive[_drive_rrr[0][leg]] = rrr_w_1_x
+        out_drive[_drive_rrr[1][leg]] = rrr_w_1_y
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4062,7 +4261,7 @@ def _run_potential(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, h_star_x, h_star_y, m_star = shared
+    gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4075,19 +4274,19 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) + gravity_y*(R_xx*h_star_y +
-        R_yx*h_star_x + m_star*t_y)
+    gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x - R_yx*h_star_in_platform_y) +
+        gravity_y*(R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x + m_star*t_y)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, prrr_Kd_2_t_2, prrr_Kd_2_t_4, prrr_b_r0_x,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_b_in_axes0_x,
             prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
-            prrr_base_point_x, prrr_base_point_y, prrr_branch_2, prrr_g_r0_x, prrr_g_r0_y,
-            prrr_h_1_x, prrr_h_1_y, prrr_h_2_x, prrr_h_2_y, prrr_h_3_x, prrr_h_3_y,
-            prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x,
-            prrr_platform_point_x, prrr_platform_point_y, prrr_potential_t, prrr_potential_t_2,
-            prrr_rho2_2_t,
+            prrr_base_point_x, prrr_base_point_y, prrr_branch_2, prrr_g_in_axes0_x,
+            prrr_g_in_axes0_y, prrr_h_1_in_spec0_x, prrr_h_1_in_spec0_y, prrr_h_2_in_spec2_x,
+            prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
+            prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
+            prrr_platform_point_y, prrr_potential_t, prrr_potential_t_2, prrr_rho2_2_t,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         # (prrr-S) from the base point to the connection point
@@ -4097,77 +4296,83 @@ def _run_potential(m, X):
         prrr_S_y = (
         t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x - prrr_base_point_y
         )
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
+        )
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
+        )
         # (potential) potential energy
-        prrr_potential_t_3 = prrr_b_r0_x + prrr_y_1_extra
-        # (prrr-h_3) first moment of link 3 about the connection point
-        prrr_h_3_r0_x = prrr_c_3*prrr_h_3_x + prrr_h_3_y*prrr_s_3
-        prrr_h_3_r0_y = prrr_c_3*prrr_h_3_y - prrr_h_3_x*prrr_s_3
-        # (potential) potential energy
-        prrr_potential_t_4 = (
-        prrr_g_r0_x*(prrr_h_1_y + prrr_c_2*prrr_h_2_x + prrr_c_2*prrr_h_3_r0_x +
-            prrr_link1_mass*prrr_potential_t_3 + prrr_link2_mass*prrr_potential_t_3 -
-            prrr_h_2_y*prrr_s_2 - prrr_h_3_r0_y*prrr_s_2) + prrr_g_r0_y*(prrr_potential_t +
-            prrr_potential_t_2 + prrr_c_2*prrr_h_2_y + prrr_c_2*prrr_h_3_r0_y +
-            prrr_h_2_x*prrr_s_2 + prrr_h_3_r0_x*prrr_s_2 - prrr_h_1_x)
+        prrr_potential_t_3 = prrr_b_in_axes0_x + prrr_y_1_extra
+        prrr_potential_t_4 = prrr_c_3*prrr_h_3_in_spec3_x + prrr_h_3_in_spec3_y*prrr_s_3_t
+        prrr_potential_t_5 = prrr_c_3*prrr_h_3_in_spec3_y - prrr_h_3_in_spec3_x*prrr_s_3_t
+        prrr_potential_t_6 = (
+        prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y + prrr_c_2*prrr_h_2_in_spec2_x +
+            prrr_c_2*prrr_potential_t_4 + prrr_link1_mass*prrr_potential_t_3 +
+            prrr_link2_mass*prrr_potential_t_3 - prrr_h_2_in_spec2_y*prrr_s_2 -
+            prrr_potential_t_5*prrr_s_2) + prrr_g_in_axes0_y*(prrr_potential_t +
+            prrr_potential_t_2 + prrr_c_2*prrr_h_2_in_spec2_y + prrr_c_2*prrr_potential_t_5 +
+            prrr_h_2_in_spec2_x*prrr_s_2 + prrr_potential_t_4*prrr_s_2 - prrr_h_1_in_spec0_x)
         )
         ok = (
         ok & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
             (prrr_disc_2 >= 0.0))
         )
         sums = m.added(sums, leg, (
-        prrr_potential_t_4,
+        -prrr_potential_t_6,
         ))
-    total_prrr, = sums
+    potential_prrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, rrr_Kd_1_t_2, rrr_Kd_1_t_4, rrr_b_r0_x, rrr_b_r0_y,
-            rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-            rrr_base_point_x, rrr_base_point_y, rrr_branch_1, rrr_g_r0_x, rrr_g_r0_y, rrr_h_1_x,
-            rrr_h_1_y, rrr_h_2_x, rrr_h_2_y, rrr_joint2_offset_x, rrr_link1_mass,
-            rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, rrr_rho2_1_t,
+        inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
+            rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+            rrr_base_point_y, rrr_branch_1, rrr_h_1_in_spec1_x, rrr_h_1_in_spec1_y,
+            rrr_h_2_in_spec2_x, rrr_h_2_in_spec2_y, rrr_joint2_offset_x, rrr_link1_mass,
+            rrr_mu_1_t, rrr_mu_1_t_2, rrr_platform_joint_offset_x, rrr_platform_point_x,
+            rrr_platform_point_y, rrr_potential_t, rrr_potential_t_2, rrr_rho2_1_t,
         ) = k
         # (rrr-S) from the base point to the connection point
         rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x - R_yx*rrr_platform_point_y
         rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -4176,36 +4381,39 @@ def _run_potential(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
+        )
         # (potential) potential energy
-        rrr_potential_t = (
-        (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x + rrr_c_2*rrr_h_2_x +
-            rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 + rrr_b_r0_y*rrr_s_1)) +
-            (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y + rrr_c_2*rrr_h_2_y +
-            rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) - rrr_h_2_x*rrr_s_2)
+        rrr_potential_t_3 = (
+        (rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x +
+            rrr_c_2*rrr_h_2_in_spec2_x + rrr_link1_mass*(rrr_c_1*rrr_potential_t +
+            rrr_potential_t_2*rrr_s_1) - rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1))
         )
         ok = (
         ok & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) & (rrr_disc_1
             >= 0.0))
         )
         sums = m.added(sums, leg, (
-        rrr_potential_t,
+        rrr_potential_t_3,
         ))
-    total_rrr, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_prrr - total_rrr
+    potential = potential_prrr - potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4217,7 +4425,7 @@ def _run_condition(m, X):
     cos = m.cos
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, legs_size = shared
+    b_c_in_platform_x, b_c_in_platform_y, legs_size = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4233,122 +4441,132 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_prrr_Kd_2_t, inv_prrr_Kd_2_t_7, inv_prrr_rho2_2_t_4, inv_prrr_size, prrr_Kd_2_t_2,
-            prrr_Kd_2_t_4, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+        inv_prrr_rho2_2_t, inv_prrr_size, inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t,
+            prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
             prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
             prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
             prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         # (prrr-S) from the base point to the connection point
-        prrr_q_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
-        prrr_q_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
-        prrr_S_x = prrr_q_in_base_x + t_x - prrr_base_point_x
-        prrr_S_y = prrr_q_in_base_y + t_y - prrr_base_point_y
-        prrr_S_r0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
+        prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+        prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+        prrr_S_x = prrr_q_x + t_x - prrr_base_point_x
+        prrr_S_y = prrr_q_y + t_y - prrr_base_point_y
+        prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx
         # (prrr-x_2) from the origin of joint 2 to the connection point
-        prrr_x_2_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        prrr_x_2_in_axes0_x = (
+        prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy - prrr_y_1_extra
+        )
         # (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        prrr_Kd_2_t = prrr_S_r0_y*prrr_S_r0_y + prrr_x_2_x*prrr_x_2_x
-        prrr_Kd_2 = 0.5*prrr_Kd_2_t + prrr_Kd_2_t_2 - prrr_Kd_2_t_4
+        prrr_Kd_2_t_3 = (
+        prrr_S_in_axes0_y*prrr_S_in_axes0_y + prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x
+        )
+        prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_x
+        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_r0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
         prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2
         # (prrr-root_2) root, with the sign of the branch
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
-        # (prrr-x_3) from the origin of joint 3 to the connection point
-        prrr_x_3_x = inv_prrr_Kd_2_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
-        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
-        prrr_c_3 = inv_prrr_Kd_2_t_7*prrr_platform_joint_offset_x*prrr_x_3_x
-        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
-        prrr_s_3 = (
-        inv_prrr_Kd_2_t*inv_prrr_Kd_2_t_7*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
-        )
-        # (prrr-r_2) from joint 2 to the connection point, along the links
-        prrr_r_2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
-        prrr_r_2_r0_y = prrr_r_2_x*prrr_s_3 - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
         prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
-        # (prrr-w_2) reciprocal vector 1
-        axis_y_prrr_axes3_r1_x = prrr_c_2*prrr_s_3 - prrr_c_3*prrr_s_2
-        axis_y_prrr_axes3_r1_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3
-        inv_prrr_r_2_r0_y = 1.0/prrr_r_2_r0_y
-        # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
-        prrr_dy_1_qdd_2 = axis_y_prrr_axes3_r1_y*inv_prrr_r_2_r0_y
-        # (prrr-w_2) reciprocal vector 1
-        prrr_w_2_t = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx)
+        # (prrr-x_3) from the origin of joint 3 to the connection point
+        prrr_x_3_in_axes2_x = (
+        inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
         )
-        prrr_w_2_t_2 = (
-        inv_prrr_r_2_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
-            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx)
+        # (prrr-c_3) cosine of the angle of joint 3 from its reference direction
+        prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x
+        # (prrr-s_3) sine of the angle of joint 3 from its reference direction
+        prrr_s_3_t = (
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2
+        )
+        # (prrr-r_2) from joint 2 to the connection point, along the links
+        prrr_r_2_in_axes2_x = prrr_joint3_offset_x + prrr_c_3*prrr_platform_joint_offset_x
+        prrr_r_2_in_axes3_y = (
+        prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t
+        )
+        # (prrr-w_2) reciprocal vector 1
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
+        prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_w_2_x = (
+        -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_yx*prrr_e_1_in_axes3_x)
+        )
+        prrr_w_2_y = (
+        inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
+            prrr_base_frame_xx*prrr_e_1_in_axes3_x)
+        )
+        # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prrr_pivot_size = abs(prrr_rho2_2)
+        prrr_pivot_size_2 = abs(prrr_r_2_in_axes3_y)
+        prrr_least_pivots = (
+        least(sqrt(inv_prrr_rho2_2_t*prrr_pivot_size), inv_prrr_size*prrr_pivot_size_2)
         )
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
-        prrr_H_a_2_z = prrr_q_in_base_x*prrr_w_2_t_2 + prrr_q_in_base_y*prrr_w_2_t
+        prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
         # (spread) rms distance of the platform points from their centroid
-        prrr_spread_t = b_c_x - prrr_platform_point_x
-        prrr_spread_t_2 = b_c_y - prrr_platform_point_y
+        prrr_spread_t = b_c_in_platform_x - prrr_platform_point_x
+        prrr_spread_t_2 = b_c_in_platform_y - prrr_platform_point_y
         prrr_spread_t_3 = prrr_spread_t*prrr_spread_t + prrr_spread_t_2*prrr_spread_t_2
-        # (prrr-rho2_2) squared amplitude
-        prrr_pivot_size = abs(prrr_rho2_2)
-        # (prrr-w_2) reciprocal vector 1
-        prrr_pivot_size_2 = abs(prrr_r_2_r0_y)
-        # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prrr_least_pivots = (
-        least(sqrt(inv_prrr_rho2_2_t_4*prrr_pivot_size), inv_prrr_size*prrr_pivot_size_2)
-        )
         clear = (
         clear & m.every(leg, (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) &
-            (abs(-prrr_r_2_r0_y) > _TOLERANCE * prrr_size))
+            (abs(prrr_r_2_in_axes3_y) > _TOLERANCE * prrr_size))
         )
         reached = reached & m.every(leg, (prrr_disc_2 >= 0.0))
         sums = m.added(sums, leg, (
         prrr_spread_t_3,
         ))
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_H[_H_prrr[0][leg]] = 1.0
-        out_H[_H_prrr[1][leg]] = -prrr_w_2_t
-        out_H[_H_prrr[2][leg]] = prrr_w_2_t_2
+        # (prrr-w_2) reciprocal vector 1
+        out_H[_H_prrr[1][leg]] = prrr_w_2_x
+        out_H[_H_prrr[2][leg]] = prrr_w_2_y
+        # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
-        out_H[_H_prrr[4][leg]] = prrr_dy_1_qdd_2
+        # (prrr-w_2) reciprocal vector 1
+        out_H[_H_prrr[4][leg]] = prrr_w_2_t
+        # (prrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_prrr[0][leg]] = prrr_least_pivots
         out_reach[_reach_prrr[0][leg]] = prrr_disc_2
-    total_prrr, = sums
+    spread_prrr, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        inv_rrr_Kd_1_t_5, inv_rrr_Kd_1_t_7, inv_rrr_rho2_1_t_4, inv_rrr_size, rrr_Kd_1_t_2,
-            rrr_Kd_1_t_4, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        inv_rrr_rho2_1_t, inv_rrr_size, inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t,
+            rrr_Kd_1_t_2, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
             rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_branch_1,
             rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
             rrr_platform_point_y, rrr_rho2_1_t, rrr_size,
         ) = k
         # (rrr-S) from the base point to the connection point
-        rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
-        rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
-        rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x
-        rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y
+        rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+        rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+        rrr_S_x = rrr_q_x + t_x - rrr_base_point_x
+        rrr_S_y = rrr_q_y + t_y - rrr_base_point_y
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
-        rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
-        rrr_Kd_1 = 0.5*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4
+        rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
+        rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
         # (rrr-px_1) component along the reference direction
         rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-py_1) component across the reference direction
         rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
+        # (rrr-Kc_1) factor of the cosine in the equation of joint 1
+        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
         rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
         # (rrr-rho2_1) squared amplitude
@@ -4357,64 +4575,66 @@ def _run_condition(m, X):
         rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1
         # (rrr-root_1) root, with the sign of the branch
         rrr_root_1 = rrr_branch_1*sqrt(rrr_disc_1)
-        # (rrr-x_2) from the origin of joint 2 to the connection point
-        rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
-        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
-        rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x
-        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
-        rrr_s_2 = (
-        inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
-        )
-        # (rrr-r_1) from joint 1 to the connection point, along the links
-        rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
-        rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2
         # (rrr-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrr_rho2_1 = 1.0/rrr_rho2_1
         rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1)
         # (rrr-s_1) sine of the angle of joint 1 from its reference direction
         rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1)
-        # (rrr-w_1) reciprocal vector 1
-        axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1
-        axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2
-        inv_rrr_r_1_r0_y = 1.0/rrr_r_1_r0_y
-        rrr_w_1_t = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+        # (rrr-x_2) from the origin of joint 2 to the connection point
+        rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x - rrr_joint2_offset_x
+        # (rrr-c_2) cosine of the angle of joint 2 from its reference direction
+        rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x
+        # (rrr-s_2) sine of the angle of joint 2 from its reference direction
+        rrr_s_2 = (
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1
         )
-        rrr_w_1_t_2 = (
-        inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+        # (rrr-r_1) from joint 1 to the connection point, along the links
+        rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x
+        rrr_r_1_in_axes2_y = (
+        rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 - rrr_r_1_in_axes1_x*rrr_s_2
+        )
+        # (rrr-w_1) reciprocal vector 1
+        rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1
+        rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2
+        inv_rrr_r_1_in_axes2_y = 1.0/rrr_r_1_in_axes2_y
+        rrr_w_1_x = (
+        -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 - rrr_base_frame_yx*rrr_w_1_t)
+        )
+        rrr_w_1_y = (
+        inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 - rrr_base_frame_xx*rrr_w_1_t)
+        )
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rrr_pivot_size = abs(rrr_rho2_1)
+        rrr_pivot_size_2 = abs(rrr_r_1_in_axes2_y)
+        rrr_least_pivots = (
+        least(sqrt(inv_rrr_rho2_1_t*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
         )
         # (rrr-H_a_1) moment of the column's unit force about the platform origin
-        rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t
+        rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x
         # (spread) rms distance of the platform points from their centroid
-        rrr_spread_t = b_c_x - rrr_platform_point_x
-        rrr_spread_t_2 = b_c_y - rrr_platform_point_y
+        rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x
+        rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y
         rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2
-        # (rrr-rho2_1) squared amplitude
-        rrr_pivot_size = abs(rrr_rho2_1)
-        # (rrr-w_1) reciprocal vector 1
-        rrr_pivot_size_2 = abs(rrr_r_1_r0_y)
-        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rrr_least_pivots = (
-        least(sqrt(inv_rrr_rho2_1_t_4*rrr_pivot_size), inv_rrr_size*rrr_pivot_size_2)
-        )
         clear = (
         clear & m.every(leg, (abs(rrr_rho2_1) > _TOLERANCE * _TOLERANCE * rrr_rho2_1_t) &
-            (abs(-rrr_r_1_r0_y) > _TOLERANCE * rrr_size))
+            (abs(rrr_r_1_in_axes2_y) > _TOLERANCE * rrr_size))
         )
         reached = reached & m.every(leg, (rrr_disc_1 >= 0.0))
         sums = m.added(sums, leg, (
         rrr_spread_t_3,
         ))
-        out_H[_H_rrr[0][leg]] = -rrr_w_1_t
-        out_H[_H_rrr[1][leg]] = rrr_w_1_t_2
+        # (rrr-w_1) reciprocal vector 1
+        out_H[_H_rrr[0][leg]] = rrr_w_1_x
+        out_H[_H_rrr[1][leg]] = rrr_w_1_y
+        # (rrr-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_rrr[2][leg]] = rrr_H_a_1_z
+        # (rrr-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rrr[0][leg]] = rrr_least_pivots
         out_reach[_reach_rrr[0][leg]] = rrr_disc_1
-    total_rrr, = sums
+    spread_rrr, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = sqrt(0.3333333333333333*total_prrr + 0.3333333333333333*total_rrr)
+    spread = sqrt(0.3333333333333333*spread_prrr + 0.3333333333333333*spread_rrr)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

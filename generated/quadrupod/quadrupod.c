@@ -526,22 +526,22 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_ups = 0;
-    real total_ups_x = 0;
-    real total_ups_y = 0;
-    real total_ups_z = 0;
-    real total_ups_xx = 0;
-    real total_ups_xy = 0;
-    real total_ups_xz = 0;
-    real total_ups_yy = 0;
-    real total_ups_yz = 0;
-    real total_ups_zz = 0;
-    real total_ups_x_2 = 0;
-    real total_ups_y_2 = 0;
-    real total_ups_z_2 = 0;
-    real total_tube_x = 0;
-    real total_tube_y = 0;
-    real total_tube_z = 0;
+    real m_star_ups = 0;
+    real h_star_ups_in_platform_x = 0;
+    real h_star_ups_in_platform_y = 0;
+    real h_star_ups_in_platform_z = 0;
+    real J_star_ups_in_platform_xx = 0;
+    real J_star_ups_in_platform_xy = 0;
+    real J_star_ups_in_platform_xz = 0;
+    real J_star_ups_in_platform_yy = 0;
+    real J_star_ups_in_platform_yz = 0;
+    real J_star_ups_in_platform_zz = 0;
+    real b_c_ups_in_platform_x = 0;
+    real b_c_ups_in_platform_y = 0;
+    real b_c_ups_in_platform_z = 0;
+    real b_c_tube_in_platform_x = 0;
+    real b_c_tube_in_platform_y = 0;
+    real b_c_tube_in_platform_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -614,40 +614,57 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_branch_1 = signs_ups_branch_1[own];
         static const signed char signs_ups_branch_2[] = {1, 1, 1, 1};
         const real ups_branch_2 = signs_ups_branch_2[own];
+        /* (ups-h_2) first moment of link 2 about the origin of link 2 */
+        const real ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
+        const real ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
+        const real ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
         /* (ups-h_3) first moment of link 3 about the connection point */
-        const real ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass;
-        /* (ups-J_2) inertia tensor of link 2 about the origin of link 2 */
-        const real ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
-        const real ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
-        const real ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
-        const real ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3;
-        /* (ups-J_3) inertia tensor of link 3 about the connection point */
-        const real ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
-        const real ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
-        const real ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
-        const real ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3;
+        const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
+        const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
+        const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx;
+        const real ups_acc_3_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy;
+        const real ups_acc_3_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz;
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
-        const real ups_J_group_2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
-            ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t - ups_J_3_t_4);
-        const real ups_J_group_2_xy =
+        const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
+        const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
+        const real ups_J_group_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
+        const real ups_J_group_2_t_4 = ups_J_group_2_t + ups_J_group_2_t_2 + ups_J_group_2_t_3;
+        const real ups_J_group_2_t_5 = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
+        const real ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
+        const real ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
+        const real ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7;
+        const real ups_J_group_2_in_axes2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+            ups_link2_mass*(ups_J_group_2_t - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8);
+        const real ups_J_group_2_in_axes2_xy =
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real ups_J_group_2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+        const real ups_J_group_2_in_axes2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_J_group_2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
-            ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_3 -
-            ups_J_3_t_4);
-        const real ups_J_group_2_yz =
+        const real ups_J_group_2_in_axes2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link2_mass*(ups_J_group_2_t_3 - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8);
+        const real ups_J_group_2_in_axes2_yz =
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real ups_J_group_2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
-            ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_2 -
-            ups_J_3_t_4);
+        const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
+        /* (ups-trace_J_2) half the trace of that inertia tensor */
+        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_in_axes2_xx +
+            R(0.5)*ups_J_group_2_in_axes2_yy + R(0.5)*ups_J_group_2_in_axes2_zz;
+        /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx;
+        const real ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy;
+        const real ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz;
         /* (h_star) first moment about the platform origin */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -663,44 +680,25 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_J_star_t_8 = ups_link3_mass*(ups_J_star_t_2 - ups_J_star_t_4);
         const real ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
         const real ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4);
-        /* (ups-h_2) first moment of link 2 about the origin of link 2 */
-        const real ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_g_r0_y = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_g_r0_z = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
-        /* (ups-trace_J_2) half the trace of that inertia tensor */
-        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_xx + R(0.5)*ups_J_group_2_yy +
-            R(0.5)*ups_J_group_2_zz;
-        /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx;
-        const real ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy;
-        const real ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz;
         /* (potential) potential energy */
-        const real ups_b_r0_x = ups_base_frame_xx*ups_base_point_x +
+        const real ups_potential_t = ups_base_frame_xx*ups_base_point_x +
             ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_b_r0_y = ups_base_frame_xy*ups_base_point_x +
+        const real ups_potential_t_2 = ups_base_frame_xy*ups_base_point_x +
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_b_r0_z = ups_base_frame_xz*ups_base_point_x +
+        const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->ups_J_group_2_xx[leg] = ups_J_group_2_xx;
-        model->ups_J_group_2_xy[leg] = ups_J_group_2_xy;
-        model->ups_J_group_2_xz[leg] = ups_J_group_2_xz;
-        model->ups_J_group_2_yy[leg] = ups_J_group_2_yy;
-        model->ups_J_group_2_yz[leg] = ups_J_group_2_yz;
-        model->ups_J_group_2_zz[leg] = ups_J_group_2_zz;
-        model->ups_Sigma_2_xx[leg] = ups_Sigma_2_xx;
-        model->ups_Sigma_2_yy[leg] = ups_Sigma_2_yy;
-        model->ups_Sigma_2_zz[leg] = ups_Sigma_2_zz;
-        model->ups_b_r0_x[leg] = ups_b_r0_x;
-        model->ups_b_r0_y[leg] = ups_b_r0_y;
-        model->ups_b_r0_z[leg] = ups_b_r0_z;
+        model->ups_J_group_2_in_axes2_xx[leg] = ups_J_group_2_in_axes2_xx;
+        model->ups_J_group_2_in_axes2_xy[leg] = ups_J_group_2_in_axes2_xy;
+        model->ups_J_group_2_in_axes2_xz[leg] = ups_J_group_2_in_axes2_xz;
+        model->ups_J_group_2_in_axes2_yy[leg] = ups_J_group_2_in_axes2_yy;
+        model->ups_J_group_2_in_axes2_yz[leg] = ups_J_group_2_in_axes2_yz;
+        model->ups_J_group_2_in_axes2_zz[leg] = ups_J_group_2_in_axes2_zz;
+        model->ups_Sigma_2_in_axes2_xx[leg] = ups_Sigma_2_in_axes2_xx;
+        model->ups_Sigma_2_in_axes2_yy[leg] = ups_Sigma_2_in_axes2_yy;
+        model->ups_Sigma_2_in_axes2_zz[leg] = ups_Sigma_2_in_axes2_zz;
+        model->ups_acc_3_t[leg] = ups_acc_3_t;
+        model->ups_acc_3_t_2[leg] = ups_acc_3_t_2;
+        model->ups_acc_3_t_3[leg] = ups_acc_3_t_3;
         model->ups_base_frame_xx[leg] = ups_base_frame_xx;
         model->ups_base_frame_xy[leg] = ups_base_frame_xy;
         model->ups_base_frame_xz[leg] = ups_base_frame_xz;
@@ -715,33 +713,33 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         model->ups_base_point_z[leg] = ups_base_point_z;
         model->ups_branch_1[leg] = ups_branch_1;
         model->ups_branch_2[leg] = ups_branch_2;
-        model->ups_g_r0_x[leg] = ups_g_r0_x;
-        model->ups_g_r0_y[leg] = ups_g_r0_y;
-        model->ups_g_r0_z[leg] = ups_g_r0_z;
-        model->ups_h_2_x[leg] = ups_h_2_x;
-        model->ups_h_2_y[leg] = ups_h_2_y;
-        model->ups_h_2_z[leg] = ups_h_2_z;
-        model->ups_h_3_x[leg] = ups_h_3_x;
-        model->ups_h_3_y[leg] = ups_h_3_y;
-        model->ups_h_3_z[leg] = ups_h_3_z;
+        model->ups_h_2_in_spec2_x[leg] = ups_h_2_in_spec2_x;
+        model->ups_h_2_in_spec2_y[leg] = ups_h_2_in_spec2_y;
+        model->ups_h_2_in_spec2_z[leg] = ups_h_2_in_spec2_z;
+        model->ups_h_3_in_spec2_x[leg] = ups_h_3_in_spec2_x;
+        model->ups_h_3_in_spec2_y[leg] = ups_h_3_in_spec2_y;
+        model->ups_h_3_in_spec2_z[leg] = ups_h_3_in_spec2_z;
         model->ups_link2_mass[leg] = ups_link2_mass;
         model->ups_link3_mass[leg] = ups_link3_mass;
         model->ups_platform_point_x[leg] = ups_platform_point_x;
         model->ups_platform_point_y[leg] = ups_platform_point_y;
         model->ups_platform_point_z[leg] = ups_platform_point_z;
-        total_ups += ups_link3_mass;
-        total_ups_x += ups_h_star_t;
-        total_ups_y += ups_h_star_t_2;
-        total_ups_z += ups_h_star_t_3;
-        total_ups_xx += ups_J_star_t_5;
-        total_ups_xy += ups_J_star_t_6;
-        total_ups_xz += ups_J_star_t_7;
-        total_ups_yy += ups_J_star_t_8;
-        total_ups_yz += ups_J_star_t_9;
-        total_ups_zz += ups_J_star_t_10;
-        total_ups_x_2 += ups_platform_point_x;
-        total_ups_y_2 += ups_platform_point_y;
-        total_ups_z_2 += ups_platform_point_z;
+        model->ups_potential_t[leg] = ups_potential_t;
+        model->ups_potential_t_2[leg] = ups_potential_t_2;
+        model->ups_potential_t_3[leg] = ups_potential_t_3;
+        m_star_ups += ups_link3_mass;
+        h_star_ups_in_platform_x += ups_h_star_t;
+        h_star_ups_in_platform_y += ups_h_star_t_2;
+        h_star_ups_in_platform_z += ups_h_star_t_3;
+        J_star_ups_in_platform_xx += -ups_J_star_t_5;
+        J_star_ups_in_platform_xy += -ups_J_star_t_6;
+        J_star_ups_in_platform_xz += -ups_J_star_t_7;
+        J_star_ups_in_platform_yy += -ups_J_star_t_8;
+        J_star_ups_in_platform_yz += -ups_J_star_t_9;
+        J_star_ups_in_platform_zz += -ups_J_star_t_10;
+        b_c_ups_in_platform_x += ups_platform_point_x;
+        b_c_ups_in_platform_y += ups_platform_point_y;
+        b_c_ups_in_platform_z += ups_platform_point_z;
     }
     for (size_t leg = 0; leg < 1; ++leg) {
         const size_t own = leg;
@@ -793,79 +791,78 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real tube_branch_1 = signs_tube_branch_1[own];
         static const signed char signs_tube_branch_2[] = {1};
         const real tube_branch_2 = signs_tube_branch_2[own];
+        /* (tube-h_2) first moment of link 2 about the origin of link 2 */
+        const real tube_h_2_in_spec2_x = tube_link2_centre_of_mass_x*tube_link2_mass;
+        const real tube_h_2_in_spec2_y = tube_link2_centre_of_mass_y*tube_link2_mass;
+        const real tube_h_2_in_spec2_z = tube_link2_centre_of_mass_z*tube_link2_mass;
         /* (tube-h_3) first moment of link 3 about the origin of link 3 */
-        const real tube_h_3_x = tube_link3_centre_of_mass_x*tube_link3_mass;
-        const real tube_h_3_y = tube_link3_centre_of_mass_y*tube_link3_mass;
-        const real tube_h_3_z = tube_link3_centre_of_mass_z*tube_link3_mass;
-        /* (tube-J_2) inertia tensor of link 2 about the origin of link 2 */
-        const real tube_J_2_t = tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_x;
-        const real tube_J_2_t_2 = tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_y;
-        const real tube_J_2_t_3 = tube_link2_centre_of_mass_z*tube_link2_centre_of_mass_z;
-        const real tube_J_2_t_4 = tube_J_2_t + tube_J_2_t_2 + tube_J_2_t_3;
-        /* (tube-J_3) inertia tensor of link 3 about the origin of link 3 */
-        const real tube_J_3_t = tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_x;
-        const real tube_J_3_t_2 = tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_y;
-        const real tube_J_3_t_3 = tube_link3_centre_of_mass_z*tube_link3_centre_of_mass_z;
-        const real tube_J_3_t_4 = tube_J_3_t + tube_J_3_t_2 + tube_J_3_t_3;
+        const real tube_h_3_in_spec2_x = tube_link3_centre_of_mass_x*tube_link3_mass;
+        const real tube_h_3_in_spec2_y = tube_link3_centre_of_mass_y*tube_link3_mass;
+        const real tube_h_3_in_spec2_z = tube_link3_centre_of_mass_z*tube_link3_mass;
+        /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real tube_acc_3_t = gravity_x*tube_base_frame_xx + gravity_y*tube_base_frame_yx +
+            gravity_z*tube_base_frame_zx;
+        const real tube_acc_3_t_2 = gravity_x*tube_base_frame_xy + gravity_y*tube_base_frame_yy +
+            gravity_z*tube_base_frame_zy;
+        const real tube_acc_3_t_3 = gravity_x*tube_base_frame_xz + gravity_y*tube_base_frame_yz +
+            gravity_z*tube_base_frame_zz;
         /* (tube-J_group_2) inertia of the links that turn with link 2, each about its reference point */
-        const real tube_J_group_2_xx = tube_link2_inertia_xx + tube_link3_inertia_xx -
-            tube_link2_mass*(tube_J_2_t - tube_J_2_t_4) - tube_link3_mass*(tube_J_3_t -
-            tube_J_3_t_4);
-        const real tube_J_group_2_xy =
+        const real tube_J_group_2_t = tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_x;
+        const real tube_J_group_2_t_2 = tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_y;
+        const real tube_J_group_2_t_3 = tube_link2_centre_of_mass_z*tube_link2_centre_of_mass_z;
+        const real tube_J_group_2_t_4 = tube_J_group_2_t + tube_J_group_2_t_2 +
+            tube_J_group_2_t_3;
+        const real tube_J_group_2_t_5 = tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_x;
+        const real tube_J_group_2_t_6 = tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_y;
+        const real tube_J_group_2_t_7 = tube_link3_centre_of_mass_z*tube_link3_centre_of_mass_z;
+        const real tube_J_group_2_t_8 = tube_J_group_2_t_5 + tube_J_group_2_t_6 +
+            tube_J_group_2_t_7;
+        const real tube_J_group_2_in_axes2_xx = tube_link2_inertia_xx + tube_link3_inertia_xx -
+            tube_link2_mass*(tube_J_group_2_t - tube_J_group_2_t_4) -
+            tube_link3_mass*(tube_J_group_2_t_5 - tube_J_group_2_t_8);
+        const real tube_J_group_2_in_axes2_xy =
             tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_z*tube_link2_mass +
             tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_z*tube_link3_mass -
             tube_link2_inertia_xz - tube_link3_inertia_xz;
-        const real tube_J_group_2_xz = tube_link2_inertia_xy + tube_link3_inertia_xy -
+        const real tube_J_group_2_in_axes2_xz = tube_link2_inertia_xy + tube_link3_inertia_xy -
             tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_y*tube_link2_mass -
             tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_y*tube_link3_mass;
-        const real tube_J_group_2_yy = tube_link2_inertia_zz + tube_link3_inertia_zz -
-            tube_link2_mass*(tube_J_2_t_3 - tube_J_2_t_4) - tube_link3_mass*(tube_J_3_t_3 -
-            tube_J_3_t_4);
-        const real tube_J_group_2_yz =
+        const real tube_J_group_2_in_axes2_yy = tube_link2_inertia_zz + tube_link3_inertia_zz -
+            tube_link2_mass*(tube_J_group_2_t_3 - tube_J_group_2_t_4) -
+            tube_link3_mass*(tube_J_group_2_t_7 - tube_J_group_2_t_8);
+        const real tube_J_group_2_in_axes2_yz =
             tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_z*tube_link2_mass +
             tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_z*tube_link3_mass -
             tube_link2_inertia_yz - tube_link3_inertia_yz;
-        const real tube_J_group_2_zz = tube_link2_inertia_yy + tube_link3_inertia_yy -
-            tube_link2_mass*(tube_J_2_t_2 - tube_J_2_t_4) - tube_link3_mass*(tube_J_3_t_2 -
-            tube_J_3_t_4);
-        /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real tube_g_r0_x = gravity_x*tube_base_frame_xx + gravity_y*tube_base_frame_yx +
-            gravity_z*tube_base_frame_zx;
-        const real tube_g_r0_y = gravity_x*tube_base_frame_xy + gravity_y*tube_base_frame_yy +
-            gravity_z*tube_base_frame_zy;
-        const real tube_g_r0_z = gravity_x*tube_base_frame_xz + gravity_y*tube_base_frame_yz +
-            gravity_z*tube_base_frame_zz;
-        /* (tube-h_2) first moment of link 2 about the origin of link 2 */
-        const real tube_h_2_x = tube_link2_centre_of_mass_x*tube_link2_mass;
-        const real tube_h_2_y = tube_link2_centre_of_mass_y*tube_link2_mass;
-        const real tube_h_2_z = tube_link2_centre_of_mass_z*tube_link2_mass;
+        const real tube_J_group_2_in_axes2_zz = tube_link2_inertia_yy + tube_link3_inertia_yy -
+            tube_link2_mass*(tube_J_group_2_t_2 - tube_J_group_2_t_4) -
+            tube_link3_mass*(tube_J_group_2_t_6 - tube_J_group_2_t_8);
         /* (tube-trace_J_2) half the trace of that inertia tensor */
-        const real tube_trace_J_2 = R(0.5)*tube_J_group_2_xx + R(0.5)*tube_J_group_2_yy +
-            R(0.5)*tube_J_group_2_zz;
+        const real tube_trace_J_2 = R(0.5)*tube_J_group_2_in_axes2_xx +
+            R(0.5)*tube_J_group_2_in_axes2_yy + R(0.5)*tube_J_group_2_in_axes2_zz;
         /* (tube-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real tube_Sigma_2_xx = tube_trace_J_2 - tube_J_group_2_xx;
-        const real tube_Sigma_2_yy = tube_trace_J_2 - tube_J_group_2_yy;
-        const real tube_Sigma_2_zz = tube_trace_J_2 - tube_J_group_2_zz;
+        const real tube_Sigma_2_in_axes2_xx = tube_trace_J_2 - tube_J_group_2_in_axes2_xx;
+        const real tube_Sigma_2_in_axes2_yy = tube_trace_J_2 - tube_J_group_2_in_axes2_yy;
+        const real tube_Sigma_2_in_axes2_zz = tube_trace_J_2 - tube_J_group_2_in_axes2_zz;
         /* (potential) potential energy */
-        const real tube_b_r0_x = tube_base_frame_xx*tube_base_point_x +
+        const real tube_potential_t = tube_base_frame_xx*tube_base_point_x +
             tube_base_frame_yx*tube_base_point_y + tube_base_frame_zx*tube_base_point_z;
-        const real tube_b_r0_y = tube_base_frame_xy*tube_base_point_x +
+        const real tube_potential_t_2 = tube_base_frame_xy*tube_base_point_x +
             tube_base_frame_yy*tube_base_point_y + tube_base_frame_zy*tube_base_point_z;
-        const real tube_b_r0_z = tube_base_frame_xz*tube_base_point_x +
+        const real tube_potential_t_3 = tube_base_frame_xz*tube_base_point_x +
             tube_base_frame_yz*tube_base_point_y + tube_base_frame_zz*tube_base_point_z;
-        model->tube_J_group_2_xx[leg] = tube_J_group_2_xx;
-        model->tube_J_group_2_xy[leg] = tube_J_group_2_xy;
-        model->tube_J_group_2_xz[leg] = tube_J_group_2_xz;
-        model->tube_J_group_2_yy[leg] = tube_J_group_2_yy;
-        model->tube_J_group_2_yz[leg] = tube_J_group_2_yz;
-        model->tube_J_group_2_zz[leg] = tube_J_group_2_zz;
-        model->tube_Sigma_2_xx[leg] = tube_Sigma_2_xx;
-        model->tube_Sigma_2_yy[leg] = tube_Sigma_2_yy;
-        model->tube_Sigma_2_zz[leg] = tube_Sigma_2_zz;
-        model->tube_b_r0_x[leg] = tube_b_r0_x;
-        model->tube_b_r0_y[leg] = tube_b_r0_y;
-        model->tube_b_r0_z[leg] = tube_b_r0_z;
+        model->tube_J_group_2_in_axes2_xx[leg] = tube_J_group_2_in_axes2_xx;
+        model->tube_J_group_2_in_axes2_xy[leg] = tube_J_group_2_in_axes2_xy;
+        model->tube_J_group_2_in_axes2_xz[leg] = tube_J_group_2_in_axes2_xz;
+        model->tube_J_group_2_in_axes2_yy[leg] = tube_J_group_2_in_axes2_yy;
+        model->tube_J_group_2_in_axes2_yz[leg] = tube_J_group_2_in_axes2_yz;
+        model->tube_J_group_2_in_axes2_zz[leg] = tube_J_group_2_in_axes2_zz;
+        model->tube_Sigma_2_in_axes2_xx[leg] = tube_Sigma_2_in_axes2_xx;
+        model->tube_Sigma_2_in_axes2_yy[leg] = tube_Sigma_2_in_axes2_yy;
+        model->tube_Sigma_2_in_axes2_zz[leg] = tube_Sigma_2_in_axes2_zz;
+        model->tube_acc_3_t[leg] = tube_acc_3_t;
+        model->tube_acc_3_t_2[leg] = tube_acc_3_t_2;
+        model->tube_acc_3_t_3[leg] = tube_acc_3_t_3;
         model->tube_base_frame_xx[leg] = tube_base_frame_xx;
         model->tube_base_frame_xy[leg] = tube_base_frame_xy;
         model->tube_base_frame_xz[leg] = tube_base_frame_xz;
@@ -880,15 +877,12 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         model->tube_base_point_z[leg] = tube_base_point_z;
         model->tube_branch_1[leg] = tube_branch_1;
         model->tube_branch_2[leg] = tube_branch_2;
-        model->tube_g_r0_x[leg] = tube_g_r0_x;
-        model->tube_g_r0_y[leg] = tube_g_r0_y;
-        model->tube_g_r0_z[leg] = tube_g_r0_z;
-        model->tube_h_2_x[leg] = tube_h_2_x;
-        model->tube_h_2_y[leg] = tube_h_2_y;
-        model->tube_h_2_z[leg] = tube_h_2_z;
-        model->tube_h_3_x[leg] = tube_h_3_x;
-        model->tube_h_3_y[leg] = tube_h_3_y;
-        model->tube_h_3_z[leg] = tube_h_3_z;
+        model->tube_h_2_in_spec2_x[leg] = tube_h_2_in_spec2_x;
+        model->tube_h_2_in_spec2_y[leg] = tube_h_2_in_spec2_y;
+        model->tube_h_2_in_spec2_z[leg] = tube_h_2_in_spec2_z;
+        model->tube_h_3_in_spec2_x[leg] = tube_h_3_in_spec2_x;
+        model->tube_h_3_in_spec2_y[leg] = tube_h_3_in_spec2_y;
+        model->tube_h_3_in_spec2_z[leg] = tube_h_3_in_spec2_z;
         model->tube_link2_mass[leg] = tube_link2_mass;
         model->tube_link3_mass[leg] = tube_link3_mass;
         model->tube_platform_joint_rotation_xx[leg] = tube_platform_joint_rotation_xx;
@@ -903,52 +897,64 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         model->tube_platform_point_x[leg] = tube_platform_point_x;
         model->tube_platform_point_y[leg] = tube_platform_point_y;
         model->tube_platform_point_z[leg] = tube_platform_point_z;
-        total_tube_x += tube_platform_point_x;
-        total_tube_y += tube_platform_point_y;
-        total_tube_z += tube_platform_point_z;
+        model->tube_potential_t[leg] = tube_potential_t;
+        model->tube_potential_t_2[leg] = tube_potential_t_2;
+        model->tube_potential_t_3[leg] = tube_potential_t_3;
+        b_c_tube_in_platform_x += tube_platform_point_x;
+        b_c_tube_in_platform_y += tube_platform_point_y;
+        b_c_tube_in_platform_z += tube_platform_point_z;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_ups;
+    const real m_star = m_star_ups + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_ups_x;
-    const real h_star_y = h_star_t_2 + total_ups_y;
-    const real h_star_z = h_star_t_3 + total_ups_z;
+    const real h_star_in_platform_x = h_star_t + h_star_ups_in_platform_x;
+    const real h_star_in_platform_y = h_star_t_2 + h_star_ups_in_platform_y;
+    const real h_star_in_platform_z = h_star_t_3 + h_star_ups_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_ups_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_ups_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_ups_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_ups_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_ups_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_ups_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_ups_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_ups_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_ups_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_ups_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_ups_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.2)*total_tube_x + R(0.2)*total_ups_x_2;
-    const real b_c_y = R(0.2)*total_tube_y + R(0.2)*total_ups_y_2;
-    const real b_c_z = R(0.2)*total_tube_z + R(0.2)*total_ups_z_2;
+    const real b_c_in_platform_x = R(0.2)*b_c_tube_in_platform_x +
+        R(0.2)*b_c_ups_in_platform_x;
+    const real b_c_in_platform_y = R(0.2)*b_c_tube_in_platform_y +
+        R(0.2)*b_c_ups_in_platform_y;
+    const real b_c_in_platform_z = R(0.2)*b_c_tube_in_platform_z +
+        R(0.2)*b_c_ups_in_platform_z;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->m_star = m_star;
     return OK;
 }
@@ -1714,41 +1720,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1759,26 +1771,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1797,21 +1818,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1829,27 +1850,27 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -1867,278 +1888,290 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
-        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
-        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
-        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
-        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
-            inv_ups_root_2*ups_J_group_2_zz);
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
-            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
-        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
-        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
-            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy));
-        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ups_Q_t = R(0.5)*ups_d_c_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
-        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
-            - ups_axis_x_x*ups_d_phi_3_t;
-        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
-            - ups_axis_x_y*ups_d_phi_3_t;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
-            - ups_axis_x_z*ups_d_phi_3_t;
-        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
-            ups_axis_x_x*ups_d_phi_3_t_2;
-        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
-            ups_axis_x_y*ups_d_phi_3_t_2;
-        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
-            ups_axis_x_z*ups_d_phi_3_t_2;
-        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
-        const real ups_Q_t_10 = 2*ups_Q_t_9;
-        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
-        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
-        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
-        const real ups_Q_t_14 = 2*ups_Q_t_13;
-        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
-        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
-            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
-        const real ups_Q_t_17 = 2*ups_Q_t_16;
-        /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z;
-        const real ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y;
-        const real ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2;
-        const real ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x;
-        const real ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x;
-        const real ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y;
-        const real ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x;
-        const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x;
-        const real ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y;
-        const real ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x;
-        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y;
-        const real ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z;
-        const real ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-u_1) centripetal acceleration of the connection point */
         const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        const real ups_u_1_in_axes2_z = axis_z_ups_axes2_x*ups_u_1_x +
+            axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-u_1) centripetal acceleration of the connection point */
-        const real ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x;
-        const real ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
-        const real ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
-        const real ups_u_1_tip_z = axis_z_ups_axes2_in_base_x*ups_u_1_x +
-            axis_z_ups_axes2_in_base_y*ups_u_1_y + axis_z_ups_axes2_in_base_z*ups_u_1_z;
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real ups_rel_o_z = ups_u_1_tip_z - ups_bias_z;
-        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real ups_qdd_2_o_t = inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z;
+        const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z;
+        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z;
+        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
         /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        const real ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2;
+        const real ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o;
         /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x;
-        const real ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
+        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_xy = -2*ups_W_2_xy - ups_qdd_2_o_t;
-        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
-        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_phi_3_o_x = -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x;
+        const real ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
+        const real ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
+        const real ups_B_2_o_in_axes2_yx = inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 +
+            ups_B_2_o_t_3 - ups_bias_t*ups_qd_2);
+        const real ups_B_2_o_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
+        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
         /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real ups_acc_3_o_x = ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y +
-            ups_axis_x_z*ups_u_1_z - ups_g_r3_x;
-        const real ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y;
-        const real ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x;
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
+        const real ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2;
+        const real ups_acc_3_o_in_axes2_x = axis_x_ups_axes2_x*ups_u_1_x +
+            axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
+        const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z;
+        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
+        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
-            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_o_t + ups_Sigma_2_xx*ups_qdd_2_o_t +
-            ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x - ups_B_2_o_xy*ups_Sigma_2_yy -
-            ups_J_group_2_yz*ups_alpha_1_o_t_2 - ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+            - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
+        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
+        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
+            ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
+            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
+            inv_ups_root_2*ups_J_group_2_in_axes2_xy));
         /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ups_c_o_y = ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z -
-            ups_h_3_x*ups_qdd_2_o_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+        const real ups_Q_t_3 = axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+            axis_y_ups_axes2_x*ups_Q_t - axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+            axis_y_ups_axes2_y*ups_Q_t - axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
+            - axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+        const real ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_x*ups_Q_t_2;
+        const real ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_y*ups_Q_t_2;
+        const real ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_z*ups_Q_t_2;
+        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_xx = -2*ups_Q_t_9;
+        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
+            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
+            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_yy = -2*ups_Q_t_10;
+        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
+            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_zz = -2*ups_Q_t_11;
         /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z;
-        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z;
-        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z;
+        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+        /* (M_ta) coupling block of M */
+        const real ups_M_ta_t = ups_Q_xy*ups_q_z;
+        const real ups_M_ta_t_2 = ups_Q_xz*ups_q_y;
+        const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
+        const real ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x;
+        const real ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y;
+        const real ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z;
+        const real ups_M_ta_t_7 = ups_Q_yz*ups_q_x;
+        const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
+        const real ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y;
+        const real ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z;
+        const real ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x;
+        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z;
+        const real ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y - ups_M_ta_t_8*ups_q_z;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
+        const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
         /* (Z_a) rotational part of Z */
-        const real ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z;
-        const real ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z -
-            ups_U_in_base_z*ups_q_in_base_x;
-        const real ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x -
-            ups_U_in_base_x*ups_q_in_base_y;
+        const real ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z;
+        const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
+        const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
-        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
-        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* total_ups_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* total_ups_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* total_ups_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* total_ups_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* total_ups_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* total_ups_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* total_ups_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* total_ups_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* total_ups_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* total_ups_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* total_ups_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* total_ups_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* total_ups_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* total_ups_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* total_ups_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
-        terms[22*count + k] = add ? terms[22*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
-        terms[23*count + k] = add ? terms[23*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
-        terms[24*count + k] = add ? terms[24*count + k] + ups_Z_a_t : ups_Z_a_t;  /* total_ups_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* total_ups_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* total_ups_z_2 */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        const real ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z;
+        const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
+        const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_xx : ups_Q_xx;  /* M_tt_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_xy : ups_Q_xy;  /* M_tt_ups_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_xz : ups_Q_xz;  /* M_tt_ups_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_yy : ups_Q_yy;  /* M_tt_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_yz : ups_Q_yz;  /* M_tt_ups_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_zz : ups_Q_zz;  /* M_tt_ups_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* M_ta_ups_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* M_ta_ups_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* M_ta_ups_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* M_ta_ups_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* M_ta_ups_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* M_ta_ups_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* M_ta_ups_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* M_ta_ups_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* M_ta_ups_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* M_aa_ups_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* M_aa_ups_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* M_aa_ups_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* M_aa_ups_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* M_aa_ups_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* M_aa_ups_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + ups_U_x : ups_U_x;  /* Z_t_ups_x */
+        terms[22*count + k] = add ? terms[22*count + k] + ups_U_y : ups_U_y;  /* Z_t_ups_y */
+        terms[23*count + k] = add ? terms[23*count + k] + ups_U_z : ups_U_z;  /* Z_t_ups_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + ups_Z_a_t : ups_Z_a_t;  /* Z_a_ups_x */
+        terms[25*count + k] = add ? terms[25*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* Z_a_ups_y */
+        terms[26*count + k] = add ? terms[26*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* Z_a_ups_z */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = axis_x_ups_axes2_x;
+        o[1*count + k] = axis_x_ups_axes2_y;
+        o[2*count + k] = axis_x_ups_axes2_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + (ups_H_a_3_x +
-            (ups_H_a_3_y + ups_H_a_3_z));
+        o[7*count + k] = (axis_x_ups_axes2_x + (axis_x_ups_axes2_y + axis_x_ups_axes2_z)) +
+            (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
         o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
@@ -2174,27 +2207,27 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -2212,48 +2245,66 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        /* (tube-S_dot) velocity of the connection point */
+        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
+            tube_base_frame_xy*tube_s_1;
+        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
+            tube_base_frame_yy*tube_s_1;
+        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
+            tube_base_frame_zy*tube_s_1;
+        const real tube_S_dot_t = tube_s_1*tube_s_2;
+        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
+        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
+            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
+        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
+            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
+        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
+            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
+        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
+            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
+        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
+            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
+        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
+            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
+        const real omega_x = s[15*w + j];
+        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
+        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
+        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
+            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
+            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
+            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -2276,96 +2327,119 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1;
-        const real tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y;
-        const real tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2;
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
+        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_x = tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x;
-        const real tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1;
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1;
-        const real tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y;
-        const real tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
+        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
+        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        const real tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        /* (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2 */
-        const real tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
+        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        /* (tube-mu_c1) the moment that goes with it */
+        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
+        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
+        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
+            tube_m3_c1_t*tube_n_m3_in_axes2_z;
+        /* (tube-mu_c2) the moment that goes with it */
+        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
+        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
+        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
+            tube_m1_c2_t*tube_n_m1_in_axes2_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
         /* (tube-mu1_c3) moment along direction 1 that goes with it */
         const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t;
+        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
         /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
+        /* (tube-mu_c3) the moment that goes with it */
+        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
+            tube_end_p3_in_axes2_z*tube_mu3_c3;
+        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
+            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
+        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
+            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
+        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
+        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
+        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*tube_f_c1_t_4;
-        const real tube_w_1_t_7 = R(1.35)*tube_f_c1_t_5;
-        const real tube_w_1_t_8 = R(1.35)*tube_f_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_f_c2_t_2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
+        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
+        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
+        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
+        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
         const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
         const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -2385,10 +2459,10 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -2406,31 +2480,31 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -2442,826 +2516,877 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_157 = 1/tube_w_1_t_75;
-        const real tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70;
-        const real tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71;
-        const real tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72;
-        const real tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73;
-        const real tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74;
-        const real tube_w_1_t_81 = inv_tube_w_1_t_157*tube_w_1_t_76;
-        const real tube_w_1_t_82 = inv_tube_w_1_t_157*tube_w_1_t_77;
-        const real tube_w_1_t_83 = R(1.35)*inv_tube_w_1_t_157*tube_w_1_t_78;
-        const real tube_w_1_t_84 = R(1.35)*inv_tube_w_1_t_157*tube_w_1_t_79;
-        const real tube_w_1_t_85 = R(1.35)*inv_tube_w_1_t_157*tube_w_1_t_80;
+        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+        const real tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70;
+        const real tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71;
+        const real tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76;
+        const real tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77;
+        const real tube_w_1_t_78 = -tube_c_2*tube_w_1_in_axes2_y;
+        /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
+        const real tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72;
+        const real tube_m1_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m1_w_1_t;
+        /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
+        const real tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73;
+        const real tube_m2_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m2_w_1_t;
+        /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
+        const real tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74;
+        const real tube_m3_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m3_w_1_t;
         /* (tube-w_2) force part of reciprocal wrench 2 */
-        const real tube_w_2_t = inv_tube_w_1_t_16*inv_tube_w_1_t_57*tube_w_1_t_17;
-        const real tube_w_2_t_2 = inv_tube_w_1_t_95*(inv_tube_w_1_t_16*tube_w_1_t_21 -
+        const real tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17;
+        const real tube_w_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 -
             tube_w_1_t_37*tube_w_2_t);
-        const real tube_w_2_t_3 = inv_tube_w_1_t_129*(tube_w_1_t_41*tube_w_2_t +
-            tube_w_1_t_53*tube_w_2_t_2 - inv_tube_w_1_t_16*tube_w_1_t_25);
-        const real tube_w_2_t_4 = inv_tube_w_1_t_157*(inv_tube_w_1_t_16*tube_w_1_t_29 +
+        const real tube_w_2_t_3 = inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t +
+            tube_w_1_t_53*tube_w_2_t_2 - inv_tube_w_1_t_13*tube_w_1_t_25);
+        const real tube_w_2_t_4 = inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 +
             tube_w_1_t_69*tube_w_2_t_3 - tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2);
-        const real tube_w_2_t_5 = inv_tube_w_1_t_16*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t +
-            tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4;
-        const real tube_w_2_t_6 = inv_tube_w_1_t_95*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 -
-            tube_w_1_t_77*tube_w_2_t_4;
-        const real tube_w_2_t_7 = inv_tube_w_1_t_16*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t +
-            tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_w_1_t_78*tube_w_2_t_4;
-        const real tube_w_2_t_8 = R(1.35)*tube_w_2_t_7;
-        const real tube_w_2_t_9 = tube_w_1_t_67*tube_w_2_t_3 + tube_w_1_t_79*tube_w_2_t_4;
-        const real tube_w_2_t_10 = R(1.35)*tube_w_2_t_9;
-        const real tube_w_2_t_11 = inv_tube_w_1_t_16*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
-            tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_w_1_t_80*tube_w_2_t_4;
-        const real tube_w_2_t_12 = R(1.35)*tube_w_2_t_11;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t_86 = tube_s_2*tube_w_1_t_81;
-        const real tube_w_1_t_87 = tube_c_2*tube_w_1_t_81;
-        /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_d_alpha_1_xz = tube_s_2*tube_w_1_t_82;
-        const real tube_d_alpha_1_yz = tube_c_2*tube_w_1_t_82;
-        /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-           3, less gravity */
-        const real tube_d_acc_3_t = tube_root_2*tube_w_2_t_5;
-        const real tube_d_acc_3_t_2 = tube_root_2*tube_w_2_t_6;
-        const real tube_d_acc_3_t_3 = tube_root_2*tube_w_1_t_87;
-        const real tube_d_acc_3_t_4 = tube_d_alpha_1_yz*tube_root_2;
-        /* (tube-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real tube_h_3_y = m->tube_h_3_y[i];
-        const real tube_h_3_z = m->tube_h_3_z[i];
-        const real tube_d_phi_3_t = tube_h_3_y*tube_w_1_t_87 - tube_h_3_z*tube_w_2_t_5;
-        const real tube_d_phi_3_t_2 = tube_d_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_w_2_t_6;
-        /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real tube_J_group_2_xz = m->tube_J_group_2_xz[i];
-        const real tube_J_group_2_yz = m->tube_J_group_2_yz[i];
-        const real tube_J_group_2_zz = m->tube_J_group_2_zz[i];
-        const real tube_h_3_x = m->tube_h_3_x[i];
-        const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_d_N_2_zy = tube_J_group_2_xz*tube_w_1_t_86 +
-            tube_J_group_2_zz*tube_w_2_t_5 + tube_d_acc_3_t*tube_h_3_x +
-            tube_root_2*(tube_d_acc_3_t*tube_link3_mass + tube_h_3_x*tube_w_2_t_5 -
-            tube_h_3_y*tube_w_1_t_86) - tube_J_group_2_yz*tube_w_1_t_87;
-        const real tube_d_N_2_zz = tube_J_group_2_xz*tube_d_alpha_1_xz +
-            tube_J_group_2_zz*tube_w_2_t_6 + tube_d_acc_3_t_2*tube_h_3_x +
-            tube_root_2*(tube_d_acc_3_t_2*tube_link3_mass + tube_h_3_x*tube_w_2_t_6 -
-            tube_d_alpha_1_xz*tube_h_3_y) - tube_J_group_2_yz*tube_d_alpha_1_yz;
-        /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real tube_d_Gamma_1_t = tube_c_2*tube_h_3_y;
-        const real tube_J_group_2_xy = m->tube_J_group_2_xy[i];
-        const real tube_J_group_2_yy = m->tube_J_group_2_yy[i];
-        const real tube_d_Gamma_1_t_2 = tube_c_2*(tube_J_group_2_xy*tube_w_1_t_86 +
-            tube_J_group_2_yz*tube_w_2_t_5 - tube_J_group_2_yy*tube_w_1_t_87 -
-            tube_d_acc_3_t_3*tube_h_3_x - tube_root_2*(tube_d_acc_3_t_3*tube_link3_mass +
-            tube_h_3_x*tube_w_1_t_87 - tube_h_3_z*tube_w_1_t_86));
-        const real tube_J_group_2_xx = m->tube_J_group_2_xx[i];
-        const real tube_d_Gamma_1_y = tube_s_2*(tube_J_group_2_xx*tube_w_1_t_86 +
-            tube_J_group_2_xz*tube_w_2_t_5 - tube_J_group_2_xy*tube_w_1_t_87 -
-            tube_d_acc_3_t*tube_h_3_y - tube_d_acc_3_t_3*tube_h_3_z) - tube_d_Gamma_1_t_2;
-        const real tube_d_Gamma_1_t_3 = tube_c_2*(tube_J_group_2_xy*tube_d_alpha_1_xz +
-            tube_J_group_2_yz*tube_w_2_t_6 - tube_J_group_2_yy*tube_d_alpha_1_yz -
-            tube_d_acc_3_t_4*tube_h_3_x - tube_root_2*(tube_d_acc_3_t_4*tube_link3_mass +
-            tube_d_alpha_1_yz*tube_h_3_x - tube_d_alpha_1_xz*tube_h_3_z));
-        const real tube_d_Gamma_1_z = tube_s_2*(tube_J_group_2_xx*tube_d_alpha_1_xz +
-            tube_J_group_2_xz*tube_w_2_t_6 - tube_J_group_2_xy*tube_d_alpha_1_yz -
-            tube_d_acc_3_t_2*tube_h_3_y - tube_d_acc_3_t_4*tube_h_3_z) - tube_d_Gamma_1_t_3;
-        /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real tube_d_G_yz = tube_d_Gamma_1_z*tube_w_1_t_81 + tube_d_N_2_zz*tube_w_2_t_5;
-        /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real tube_Q_t = tube_d_Gamma_1_y*tube_w_1_t_81 + tube_d_N_2_zy*tube_w_2_t_5 -
-            tube_link3_mass;
-        const real tube_Q_t_2 = R(0.5)*tube_Q_t;
-        const real tube_Q_t_3 = tube_d_Gamma_1_z*tube_w_1_t_82 + tube_d_N_2_zz*tube_w_2_t_6 -
-            tube_link3_mass;
-        const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-        const real tube_Q_t_5 = axis_y_tube_axes2_in_base_x*tube_Q_t_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_G_yz - axis_x_tube_axes2_x*tube_d_phi_3_t;
-        const real tube_Q_t_6 = axis_y_tube_axes2_in_base_y*tube_Q_t_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_G_yz - axis_x_tube_axes2_y*tube_d_phi_3_t;
-        const real tube_Q_t_7 = axis_y_tube_axes2_in_base_z*tube_Q_t_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_G_yz - axis_x_tube_axes2_z*tube_d_phi_3_t;
-        const real tube_Q_t_8 = axis_z_tube_axes2_in_base_x*tube_Q_t_4 -
-            axis_x_tube_axes2_x*tube_d_phi_3_t_2;
-        const real tube_Q_t_9 = axis_z_tube_axes2_in_base_y*tube_Q_t_4 -
-            axis_x_tube_axes2_y*tube_d_phi_3_t_2;
-        const real tube_Q_t_10 = axis_z_tube_axes2_in_base_z*tube_Q_t_4 -
-            axis_x_tube_axes2_z*tube_d_phi_3_t_2;
-        const real tube_Q_t_11 = axis_y_tube_axes2_in_base_x*tube_Q_t_5 +
-            axis_z_tube_axes2_in_base_x*tube_Q_t_8;
-        const real tube_Q_t_12 = 2*tube_Q_t_11 + tube_link3_mass;
-        const real tube_Q_t_13 = axis_y_tube_axes2_in_base_x*tube_Q_t_6 +
-            axis_y_tube_axes2_in_base_y*tube_Q_t_5 + axis_z_tube_axes2_in_base_x*tube_Q_t_9 +
-            axis_z_tube_axes2_in_base_y*tube_Q_t_8;
-        const real tube_Q_t_14 = axis_y_tube_axes2_in_base_x*tube_Q_t_7 +
-            axis_y_tube_axes2_in_base_z*tube_Q_t_5 + axis_z_tube_axes2_in_base_x*tube_Q_t_10 +
-            axis_z_tube_axes2_in_base_z*tube_Q_t_8;
-        const real tube_Q_t_15 = axis_y_tube_axes2_in_base_y*tube_Q_t_6 +
-            axis_z_tube_axes2_in_base_y*tube_Q_t_9;
-        const real tube_Q_t_16 = 2*tube_Q_t_15 + tube_link3_mass;
-        const real tube_Q_t_17 = axis_y_tube_axes2_in_base_y*tube_Q_t_7 +
-            axis_y_tube_axes2_in_base_z*tube_Q_t_6 + axis_z_tube_axes2_in_base_y*tube_Q_t_10 +
-            axis_z_tube_axes2_in_base_z*tube_Q_t_9;
-        const real tube_Q_t_18 = axis_y_tube_axes2_in_base_z*tube_Q_t_7 +
-            axis_z_tube_axes2_in_base_z*tube_Q_t_10;
-        const real tube_Q_t_19 = 2*tube_Q_t_18 + tube_link3_mass;
-        /* (tube-o_2) moment part of reciprocal wrench 2 */
-        const real tube_o_2_x = tube_end_p2_r3_y*tube_w_2_t_10 - tube_end_p3_r1_x*tube_w_2_t_12;
-        const real tube_o_2_y = -tube_end_p1_r1_x*tube_w_2_t_8 - tube_end_p2_r3_x*tube_w_2_t_10;
-        const real tube_o_2_z = tube_end_p1_r3_y*tube_w_2_t_8 + tube_end_p3_r3_x*tube_w_2_t_12;
+        const real tube_w_2_in_axes2_y = inv_tube_w_1_t_13*tube_w_1_t_14 +
+            tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 -
+            tube_w_1_t_76*tube_w_2_t_4;
+        const real tube_w_2_in_axes2_z = inv_tube_w_1_t_49*tube_w_2_t_2 +
+            tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
+        /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
+        const real tube_m1_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t +
+            tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
+        const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
+        /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
+        const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3;
+        const real tube_m2_w_2 = -R(1.35)*tube_m2_w_2_t;
+        /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
+        const real tube_m3_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
+            tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
+        const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
         /* (tube-o_1) moment part of reciprocal wrench 1 */
-        const real tube_o_1_x = -tube_end_p2_r3_y*tube_w_1_t_84 - tube_end_p3_r1_x*tube_w_1_t_85;
-        const real tube_o_1_y = tube_end_p2_r3_x*tube_w_1_t_84 - tube_end_p1_r1_x*tube_w_1_t_83;
-        const real tube_o_1_z = tube_end_p1_r3_y*tube_w_1_t_83 + tube_end_p3_r3_x*tube_w_1_t_85;
-        const real tube_o_1_t = tube_c_2*tube_o_1_x;
-        const real tube_o_1_t_2 = tube_o_1_y*tube_s_2;
-        const real tube_o_1_t_3 = tube_c_2*tube_o_1_y;
-        const real tube_o_1_t_4 = tube_o_1_x*tube_s_2;
-        /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_dalpha_alpha_1_xz = tube_o_1_z*tube_s_2;
-        const real tube_dalpha_alpha_1_yz = tube_c_2*tube_o_1_z;
-        /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real tube_dalpha_acc_3_t = tube_o_2_x*tube_root_2;
-        const real tube_dalpha_acc_3_t_2 = tube_o_2_y*tube_root_2;
-        const real tube_dalpha_acc_3_t_3 = tube_o_2_z*tube_root_2;
-        const real tube_dalpha_acc_3_t_4 = tube_o_1_t*tube_root_2;
-        const real tube_dalpha_acc_3_t_5 = tube_o_1_t_3*tube_root_2;
-        const real tube_dalpha_acc_3_t_6 = tube_dalpha_alpha_1_yz*tube_root_2;
-        /* (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its
-           turning about its reference point */
-        const real tube_dalpha_phi_3_t = tube_h_3_y*tube_o_1_t - tube_h_3_z*tube_o_2_x;
-        const real tube_dalpha_phi_3_t_2 = tube_h_3_y*tube_o_1_t_3 - tube_h_3_z*tube_o_2_y;
-        const real tube_dalpha_phi_3_t_3 = tube_dalpha_alpha_1_yz*tube_h_3_y -
-            tube_h_3_z*tube_o_2_z;
-        /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real tube_dalpha_N_2_zx = tube_J_group_2_xz*tube_o_1_t_4 +
-            tube_J_group_2_zz*tube_o_2_x + tube_dalpha_acc_3_t*tube_h_3_x +
-            tube_root_2*(tube_dalpha_acc_3_t*tube_link3_mass + tube_h_3_x*tube_o_2_x -
-            tube_h_3_y*tube_o_1_t_4) - tube_J_group_2_yz*tube_o_1_t;
-        const real tube_dalpha_N_2_zy = tube_J_group_2_xz*tube_o_1_t_2 +
-            tube_J_group_2_zz*tube_o_2_y + tube_dalpha_acc_3_t_2*tube_h_3_x +
-            tube_root_2*(tube_dalpha_acc_3_t_2*tube_link3_mass + tube_h_3_x*tube_o_2_y -
-            tube_h_3_y*tube_o_1_t_2) - tube_J_group_2_yz*tube_o_1_t_3;
-        const real tube_dalpha_N_2_zz = tube_J_group_2_xz*tube_dalpha_alpha_1_xz +
-            tube_J_group_2_zz*tube_o_2_z + tube_dalpha_acc_3_t_3*tube_h_3_x +
-            tube_root_2*(tube_dalpha_acc_3_t_3*tube_link3_mass + tube_h_3_x*tube_o_2_z -
-            tube_dalpha_alpha_1_xz*tube_h_3_y) - tube_J_group_2_yz*tube_dalpha_alpha_1_yz;
-        /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real tube_dalpha_Gamma_1_t = tube_c_2*(tube_J_group_2_xy*tube_o_1_t_4 +
-            tube_J_group_2_yz*tube_o_2_x - tube_J_group_2_yy*tube_o_1_t -
-            tube_dalpha_acc_3_t_4*tube_h_3_x - tube_root_2*(tube_dalpha_acc_3_t_4*tube_link3_mass
-            + tube_h_3_x*tube_o_1_t - tube_h_3_z*tube_o_1_t_4));
-        const real tube_dalpha_Gamma_1_x = tube_s_2*(tube_J_group_2_xx*tube_o_1_t_4 +
-            tube_J_group_2_xz*tube_o_2_x - tube_J_group_2_xy*tube_o_1_t -
-            tube_dalpha_acc_3_t*tube_h_3_y - tube_dalpha_acc_3_t_4*tube_h_3_z) -
-            tube_dalpha_Gamma_1_t;
-        const real tube_dalpha_Gamma_1_t_2 = tube_c_2*(tube_J_group_2_xy*tube_o_1_t_2 +
-            tube_J_group_2_yz*tube_o_2_y - tube_J_group_2_yy*tube_o_1_t_3 -
-            tube_dalpha_acc_3_t_5*tube_h_3_x - tube_root_2*(tube_dalpha_acc_3_t_5*tube_link3_mass
-            + tube_h_3_x*tube_o_1_t_3 - tube_h_3_z*tube_o_1_t_2));
-        const real tube_dalpha_Gamma_1_y = tube_s_2*(tube_J_group_2_xx*tube_o_1_t_2 +
-            tube_J_group_2_xz*tube_o_2_y - tube_J_group_2_xy*tube_o_1_t_3 -
-            tube_dalpha_acc_3_t_2*tube_h_3_y - tube_dalpha_acc_3_t_5*tube_h_3_z) -
-            tube_dalpha_Gamma_1_t_2;
-        const real tube_dalpha_Gamma_1_t_3 = tube_c_2*(tube_J_group_2_xy*tube_dalpha_alpha_1_xz +
-            tube_J_group_2_yz*tube_o_2_z - tube_J_group_2_yy*tube_dalpha_alpha_1_yz -
-            tube_dalpha_acc_3_t_6*tube_h_3_x - tube_root_2*(tube_dalpha_acc_3_t_6*tube_link3_mass
-            + tube_dalpha_alpha_1_yz*tube_h_3_x - tube_dalpha_alpha_1_xz*tube_h_3_z));
-        const real tube_dalpha_Gamma_1_z = tube_s_2*(tube_J_group_2_xx*tube_dalpha_alpha_1_xz +
-            tube_J_group_2_xz*tube_o_2_z - tube_J_group_2_xy*tube_dalpha_alpha_1_yz -
-            tube_dalpha_acc_3_t_3*tube_h_3_y - tube_dalpha_acc_3_t_6*tube_h_3_z) -
-            tube_dalpha_Gamma_1_t_3;
-        /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_yx = tube_dalpha_Gamma_1_x*tube_w_1_t_81 +
-            tube_dalpha_N_2_zx*tube_w_2_t_5;
-        const real tube_dalpha_G_yy = tube_dalpha_Gamma_1_y*tube_w_1_t_81 +
-            tube_dalpha_N_2_zy*tube_w_2_t_5;
-        const real tube_dalpha_G_yz = tube_dalpha_Gamma_1_z*tube_w_1_t_81 +
-            tube_dalpha_N_2_zz*tube_w_2_t_5;
-        const real tube_dalpha_G_zx = tube_dalpha_Gamma_1_x*tube_w_1_t_82 +
-            tube_dalpha_N_2_zx*tube_w_2_t_6;
-        const real tube_dalpha_G_zy = tube_dalpha_Gamma_1_y*tube_w_1_t_82 +
-            tube_dalpha_N_2_zy*tube_w_2_t_6;
-        const real tube_dalpha_G_zz = tube_dalpha_Gamma_1_z*tube_w_1_t_82 +
-            tube_dalpha_N_2_zz*tube_w_2_t_6;
-        /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real tube_dalpha_c_in_base_x = axis_x_tube_axes2_x*tube_dalpha_phi_3_t -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zx;
-        const real tube_dalpha_c_in_base_y = axis_x_tube_axes2_y*tube_dalpha_phi_3_t -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zx;
-        const real tube_dalpha_c_in_base_z = axis_x_tube_axes2_z*tube_dalpha_phi_3_t -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zx;
-        const real tube_dalpha_c_in_base_x_2 = axis_x_tube_axes2_x*tube_dalpha_phi_3_t_2 -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zy;
-        const real tube_dalpha_c_in_base_y_2 = axis_x_tube_axes2_y*tube_dalpha_phi_3_t_2 -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zy;
-        const real tube_dalpha_c_in_base_z_2 = axis_x_tube_axes2_z*tube_dalpha_phi_3_t_2 -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zy;
-        const real tube_dalpha_c_in_base_x_3 = axis_x_tube_axes2_x*tube_dalpha_phi_3_t_3 -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zz;
-        const real tube_dalpha_c_in_base_y_3 = axis_x_tube_axes2_y*tube_dalpha_phi_3_t_3 -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zz;
-        const real tube_dalpha_c_in_base_z_3 = axis_x_tube_axes2_z*tube_dalpha_phi_3_t_3 -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zz;
-        /* (M_ta) coupling block of M */
-        const real tube_M_ta_t = tube_Q_t_13*tube_q_in_base_z;
-        const real tube_M_ta_t_2 = tube_Q_t_14*tube_q_in_base_y;
-        const real tube_M_ta_t_3 = tube_Q_t_17*tube_q_in_base_x;
-        const real tube_M_ta_t_4 = tube_M_ta_t + axis_x_tube_axes2_x*tube_dalpha_c_in_base_x +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_3 - tube_M_ta_t_2;
-        const real tube_M_ta_t_5 = tube_Q_t_12*tube_q_in_base_z -
-            axis_x_tube_axes2_y*tube_dalpha_c_in_base_x -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_3 - tube_Q_t_14*tube_q_in_base_x;
-        const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_3 + tube_Q_t_12*tube_q_in_base_y -
-            tube_Q_t_13*tube_q_in_base_x;
-        const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_base_y +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_3 + tube_Q_t_16*tube_q_in_base_z -
-            tube_Q_t_17*tube_q_in_base_y;
-        const real tube_M_ta_t_8 = tube_M_ta_t - tube_M_ta_t_3 -
-            axis_x_tube_axes2_y*tube_dalpha_c_in_base_y -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_3;
-        const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_3 + tube_Q_t_13*tube_q_in_base_y -
-            tube_Q_t_16*tube_q_in_base_x;
-        const real tube_M_ta_t_10 = axis_x_tube_axes2_x*tube_dalpha_c_in_base_z +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_3 + tube_Q_t_17*tube_q_in_base_z -
-            tube_Q_t_19*tube_q_in_base_y;
-        const real tube_M_ta_t_11 = tube_Q_t_14*tube_q_in_base_z -
-            axis_x_tube_axes2_y*tube_dalpha_c_in_base_z -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_3 - tube_Q_t_19*tube_q_in_base_x;
-        const real tube_M_ta_t_12 = tube_M_ta_t_3 - tube_M_ta_t_2 -
-            axis_x_tube_axes2_z*tube_dalpha_c_in_base_z -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_2 -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_3;
-        /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_m1_x = tube_dalpha_Gamma_1_x*tube_w_1_t_83 +
-            tube_dalpha_N_2_zx*tube_w_2_t_8;
-        const real tube_dalpha_G_m1_y = tube_dalpha_Gamma_1_y*tube_w_1_t_83 +
-            tube_dalpha_N_2_zy*tube_w_2_t_8;
-        const real tube_dalpha_G_m1_z = tube_dalpha_Gamma_1_z*tube_w_1_t_83 +
-            tube_dalpha_N_2_zz*tube_w_2_t_8;
-        /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_m2_x = tube_dalpha_Gamma_1_x*tube_w_1_t_84 -
-            tube_dalpha_N_2_zx*tube_w_2_t_10;
-        const real tube_dalpha_G_m2_y = tube_dalpha_Gamma_1_y*tube_w_1_t_84 -
-            tube_dalpha_N_2_zy*tube_w_2_t_10;
-        const real tube_dalpha_G_m2_z = tube_dalpha_Gamma_1_z*tube_w_1_t_84 -
-            tube_dalpha_N_2_zz*tube_w_2_t_10;
-        /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_m3_x = tube_dalpha_Gamma_1_x*tube_w_1_t_85 +
-            tube_dalpha_N_2_zx*tube_w_2_t_12;
-        const real tube_dalpha_G_m3_y = tube_dalpha_Gamma_1_y*tube_w_1_t_85 +
-            tube_dalpha_N_2_zy*tube_w_2_t_12;
-        const real tube_dalpha_G_m3_z = tube_dalpha_Gamma_1_z*tube_w_1_t_85 +
-            tube_dalpha_N_2_zz*tube_w_2_t_12;
-        /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_m_xx = -tube_dalpha_G_m2_x*tube_end_p2_r3_y -
-            tube_dalpha_G_m3_x*tube_end_p3_r1_x;
-        const real tube_dalpha_G_m_xy = -tube_dalpha_G_m2_y*tube_end_p2_r3_y -
-            tube_dalpha_G_m3_y*tube_end_p3_r1_x;
-        const real tube_dalpha_G_m_xz = -tube_dalpha_G_m2_z*tube_end_p2_r3_y -
-            tube_dalpha_G_m3_z*tube_end_p3_r1_x;
-        const real tube_dalpha_G_m_yx = tube_dalpha_G_m2_x*tube_end_p2_r3_x -
-            tube_dalpha_G_m1_x*tube_end_p1_r1_x;
-        const real tube_dalpha_G_m_yy = tube_dalpha_G_m2_y*tube_end_p2_r3_x -
-            tube_dalpha_G_m1_y*tube_end_p1_r1_x;
-        const real tube_dalpha_G_m_yz = tube_dalpha_G_m2_z*tube_end_p2_r3_x -
-            tube_dalpha_G_m1_z*tube_end_p1_r1_x;
-        const real tube_dalpha_G_m_zx = tube_dalpha_G_m1_x*tube_end_p1_r3_y +
-            tube_dalpha_G_m3_x*tube_end_p3_r3_x;
-        const real tube_dalpha_G_m_zy = tube_dalpha_G_m1_y*tube_end_p1_r3_y +
-            tube_dalpha_G_m3_y*tube_end_p3_r3_x;
-        const real tube_dalpha_G_m_zz = tube_dalpha_G_m1_z*tube_end_p1_r3_y +
-            tube_dalpha_G_m3_z*tube_end_p3_r3_x;
-        /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real tube_d_G_m1_x = tube_h_3_z*tube_w_2_t_8 - tube_d_Gamma_1_t*tube_w_1_t_83;
-        const real tube_d_G_m1_y = tube_d_Gamma_1_y*tube_w_1_t_83 + tube_d_N_2_zy*tube_w_2_t_8;
-        const real tube_d_G_m1_z = tube_d_Gamma_1_z*tube_w_1_t_83 + tube_d_N_2_zz*tube_w_2_t_8;
-        /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
-           the leg's inertia and weight along all freedoms */
-        const real tube_d_G_m2_x = -tube_d_Gamma_1_t*tube_w_1_t_84 - tube_h_3_z*tube_w_2_t_10;
-        const real tube_d_G_m2_y = tube_d_Gamma_1_y*tube_w_1_t_84 - tube_d_N_2_zy*tube_w_2_t_10;
-        const real tube_d_G_m2_z = tube_d_Gamma_1_z*tube_w_1_t_84 - tube_d_N_2_zz*tube_w_2_t_10;
-        /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
-           the leg's inertia and weight along all freedoms */
-        const real tube_d_G_m3_x = tube_h_3_z*tube_w_2_t_12 - tube_d_Gamma_1_t*tube_w_1_t_85;
-        const real tube_d_G_m3_y = tube_d_Gamma_1_y*tube_w_1_t_85 + tube_d_N_2_zy*tube_w_2_t_12;
-        const real tube_d_G_m3_z = tube_d_Gamma_1_z*tube_w_1_t_85 + tube_d_N_2_zz*tube_w_2_t_12;
-        /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real tube_d_G_m_xx = -tube_d_G_m2_x*tube_end_p2_r3_y -
-            tube_d_G_m3_x*tube_end_p3_r1_x;
-        const real tube_d_G_m_xy = -tube_d_G_m2_y*tube_end_p2_r3_y -
-            tube_d_G_m3_y*tube_end_p3_r1_x;
-        const real tube_d_G_m_xz = -tube_d_G_m2_z*tube_end_p2_r3_y -
-            tube_d_G_m3_z*tube_end_p3_r1_x;
-        const real tube_d_G_m_yx = tube_d_G_m2_x*tube_end_p2_r3_x -
-            tube_d_G_m1_x*tube_end_p1_r1_x;
-        const real tube_d_G_m_yy = tube_d_G_m2_y*tube_end_p2_r3_x -
-            tube_d_G_m1_y*tube_end_p1_r1_x;
-        const real tube_d_G_m_yz = tube_d_G_m2_z*tube_end_p2_r3_x -
-            tube_d_G_m1_z*tube_end_p1_r1_x;
-        const real tube_d_G_m_zx = tube_d_G_m1_x*tube_end_p1_r3_y +
-            tube_d_G_m3_x*tube_end_p3_r3_x;
-        const real tube_d_G_m_zy = tube_d_G_m1_y*tube_end_p1_r3_y +
-            tube_d_G_m3_y*tube_end_p3_r3_x;
-        const real tube_d_G_m_zz = tube_d_G_m1_z*tube_end_p1_r3_y +
-            tube_d_G_m3_z*tube_end_p3_r3_x;
-        /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real tube_dalpha_c_m_in_base_x = -axis_x_tube_axes2_x*tube_dalpha_G_m_xx -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zx;
-        const real tube_dalpha_c_m_in_base_y = -axis_x_tube_axes2_y*tube_dalpha_G_m_xx -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zx;
-        const real tube_dalpha_c_m_in_base_x_2 = -axis_x_tube_axes2_x*tube_dalpha_G_m_xy -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zy;
-        const real tube_dalpha_c_m_in_base_y_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_xy -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zy;
-        const real tube_dalpha_c_m_in_base_x_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_xz -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zz;
-        const real tube_dalpha_c_m_in_base_y_3 = -axis_x_tube_axes2_y*tube_dalpha_G_m_xz -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zz;
-        const real tube_dalpha_c_m_in_base_z =
-            axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xx -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zx) +
-            axis_y_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xy -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zy) +
-            axis_z_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xz -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zz);
-        /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real tube_d_c_m_in_base_x = -axis_x_tube_axes2_x*tube_d_G_m_xx -
-            axis_y_tube_axes2_in_base_x*tube_d_G_m_yx - axis_z_tube_axes2_in_base_x*tube_d_G_m_zx;
-        const real tube_d_c_m_in_base_y = -axis_x_tube_axes2_y*tube_d_G_m_xx -
-            axis_y_tube_axes2_in_base_y*tube_d_G_m_yx - axis_z_tube_axes2_in_base_y*tube_d_G_m_zx;
-        const real tube_d_c_m_in_base_z = -axis_x_tube_axes2_z*tube_d_G_m_xx -
-            axis_y_tube_axes2_in_base_z*tube_d_G_m_yx - axis_z_tube_axes2_in_base_z*tube_d_G_m_zx;
-        const real tube_d_c_m_in_base_x_2 = -axis_x_tube_axes2_x*tube_d_G_m_xy -
-            axis_y_tube_axes2_in_base_x*tube_d_G_m_yy - axis_z_tube_axes2_in_base_x*tube_d_G_m_zy;
-        const real tube_d_c_m_in_base_y_2 = -axis_x_tube_axes2_y*tube_d_G_m_xy -
-            axis_y_tube_axes2_in_base_y*tube_d_G_m_yy - axis_z_tube_axes2_in_base_y*tube_d_G_m_zy;
-        const real tube_d_c_m_in_base_z_2 = -axis_x_tube_axes2_z*tube_d_G_m_xy -
-            axis_y_tube_axes2_in_base_z*tube_d_G_m_yy - axis_z_tube_axes2_in_base_z*tube_d_G_m_zy;
-        const real tube_d_c_m_in_base_x_3 = -axis_x_tube_axes2_x*tube_d_G_m_xz -
-            axis_y_tube_axes2_in_base_x*tube_d_G_m_yz - axis_z_tube_axes2_in_base_x*tube_d_G_m_zz;
-        const real tube_d_c_m_in_base_y_3 = -axis_x_tube_axes2_y*tube_d_G_m_xz -
-            axis_y_tube_axes2_in_base_y*tube_d_G_m_yz - axis_z_tube_axes2_in_base_y*tube_d_G_m_zz;
-        const real tube_d_c_m_in_base_z_3 = -axis_x_tube_axes2_z*tube_d_G_m_xz -
-            axis_y_tube_axes2_in_base_z*tube_d_G_m_yz - axis_z_tube_axes2_in_base_z*tube_d_G_m_zz;
-        const real tube_d_c_m_in_base_x_4 = axis_x_tube_axes2_x*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_x_3;
-        const real tube_d_c_m_in_base_y_4 = axis_x_tube_axes2_y*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_x_3;
-        const real tube_d_c_m_in_base_z_4 = axis_x_tube_axes2_z*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_x_3;
-        const real tube_d_c_m_in_base_x_5 = axis_x_tube_axes2_x*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_y_3;
-        /* (M_aa) rotational block of M */
-        const real tube_M_aa_t = tube_M_ta_t_7*tube_q_in_base_z +
-            tube_d_c_m_in_base_y_4*tube_q_in_base_z -
-            axis_x_tube_axes2_x*tube_dalpha_c_m_in_base_x -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_2 -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_3 -
-            tube_M_ta_t_10*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_y;
-        const real tube_M_aa_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_3 +
-            tube_M_ta_t_8*tube_q_in_base_z + tube_d_c_m_in_base_x_4*tube_q_in_base_z -
-            tube_M_ta_t_11*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_x;
-        const real tube_M_aa_t_3 = tube_M_ta_t_12*tube_q_in_base_y +
-            tube_M_ta_t_9*tube_q_in_base_z + tube_d_c_m_in_base_x_4*tube_q_in_base_y -
-            axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_x -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_2 -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_3 -
-            tube_d_c_m_in_base_y_4*tube_q_in_base_x;
-        const real tube_M_aa_t_4 = axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_3 +
-            tube_M_ta_t_11*tube_q_in_base_x + tube_d_c_m_in_base_x_5*tube_q_in_base_z -
-            tube_M_ta_t_5*tube_q_in_base_z -
-            tube_q_in_base_x*(axis_x_tube_axes2_z*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_y_3);
-        const real tube_M_aa_t_5 = axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_3 +
-            tube_M_ta_t_12*tube_q_in_base_x + tube_M_ta_t_6*tube_q_in_base_z +
-            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_y_3) -
-            tube_d_c_m_in_base_x_5*tube_q_in_base_y;
-        const real tube_M_aa_t_6 = tube_M_ta_t_6*tube_q_in_base_y +
-            tube_q_in_base_y*(axis_x_tube_axes2_x*tube_d_c_m_in_base_z +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_z_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_z_3) - tube_dalpha_c_m_in_base_z -
-            tube_M_ta_t_9*tube_q_in_base_x -
-            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_z_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_z_3);
-        /* (tube-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z;
-        const real tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_3;
+        const real tube_o_1_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_1 -
+            tube_end_p3_in_axes2_z*tube_m3_w_1;
+        const real tube_o_1_in_axes2_y = tube_m2_w_1*tube_n_m2_in_axes2_y -
+            tube_end_p1_in_axes2_z*tube_m1_w_1;
+        const real tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z +
+            tube_m3_w_1*tube_n_m3_in_axes2_z;
+        /* (tube-o_2) moment part of reciprocal wrench 2 */
+        const real tube_o_2_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_2 -
+            tube_end_p3_in_axes2_z*tube_m3_w_2;
+        const real tube_o_2_in_axes2_y = tube_m2_w_2*tube_n_m2_in_axes2_y -
+            tube_end_p1_in_axes2_z*tube_m1_w_2;
+        const real tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z +
+            tube_m3_w_2*tube_n_m3_in_axes2_z;
         /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_tip_x = axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y +
-            axis_x_tube_axes2_z*omega_z;
-        const real tube_omega_tip_y = axis_y_tube_axes2_in_base_x*omega_x +
-            axis_y_tube_axes2_in_base_y*omega_y + axis_y_tube_axes2_in_base_z*omega_z;
-        const real tube_omega_tip_z = axis_z_tube_axes2_in_base_x*omega_x +
-            axis_z_tube_axes2_in_base_y*omega_y + axis_z_tube_axes2_in_base_z*omega_z;
-        const real tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_y;
+        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
+            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
+        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
+            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
+        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
         /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_x;
+        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
+            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
+        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
         /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z -
-            tube_end_p3_r1_x*tube_omega_tip_x;
-        /* (tube-S_dot) velocity of the connection point */
-        const real tube_S_dot_tip_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_tip_y = axis_y_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_dot_y + axis_y_tube_axes2_in_base_z*tube_S_dot_z;
-        const real tube_S_dot_tip_z = axis_z_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_dot_y + axis_z_tube_axes2_in_base_z*tube_S_dot_z;
-        /* (tube-qd_3) rate of joint 3 */
-        const real tube_qd_3_t = R(1.35)*tube_eta_1;
-        const real tube_qd_3_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_3_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_3_t_4 = inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 +
-            tube_S_dot_tip_z*tube_w_1_t_77 + tube_qd_3_t*tube_w_1_t_78 +
-            tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80);
-        const real tube_qd_3_t_5 = inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 +
-            tube_S_dot_tip_z*tube_w_1_t_65 + tube_qd_3_t*tube_w_1_t_66 +
-            tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67 -
-            tube_qd_3_t_4*tube_w_1_t_69);
-        const real tube_qd_3_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z +
-            tube_S_dot_tip_y*tube_w_1_t_50 + tube_qd_3_t*tube_w_1_t_51 +
-            tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58 +
-            tube_qd_3_t_5*tube_w_1_t_53);
-        const real tube_qd_3_t_7 = tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 +
-            tube_qd_3_t_3*tube_w_1_t_16 + tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25;
-        const real tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7;
+        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-qd_1) rate of joint 1 */
+        const real tube_qd_1_t = R(1.35)*tube_eta_1;
+        const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
+        const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
+        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m2_w_1_t*tube_qd_1_t_2 + tube_m3_w_1_t*tube_qd_1_t_3);
+        /* (tube-qd_2) rate of joint 2 */
+        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67);
+        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
+        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
+            + tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25;
+        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
         /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_t = tube_qd_3_t_4*tube_s_2;
-        const real tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4;
-        /* (tube-u_1) centripetal acceleration of the connection point */
-        const real tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2;
-        const real tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3;
-        const real tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t;
-        /* (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8;
-        const real tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8;
+        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
+        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
         /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_t = tube_omega_1_t*tube_omega_1_t;
-        const real tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2;
-        const real tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8;
-        const real tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2;
+        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
+        const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
+        /* (tube-u_1) centripetal acceleration of the connection point */
+        const real tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
+        const real tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
+        const real tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
         /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_root_2*tube_zeta_2_y;
-        const real tube_bias_t_2 = tube_W_2_xy*tube_root_2;
-        const real tube_bias_t_3 = 2*tube_S_dot_tip_x;
-        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8;
-        const real tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2;
-        const real tube_bias_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_z = 2*tube_bias_t + tube_bias_t_5;
+        const real tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2;
+        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2;
+        const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
+        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_2;
+        const real tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y;
+        const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
+        const real tube_bias_in_axes2_z = 2*tube_bias_t + tube_bias_t_5;
         /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real tube_rel_o_y = axis_y_tube_axes2_in_base_x*tube_u_1_x +
-            axis_y_tube_axes2_in_base_y*tube_u_1_y + axis_y_tube_axes2_in_base_z*tube_u_1_z -
-            tube_bias_y;
-        const real tube_rel_o_z = axis_z_tube_axes2_in_base_x*tube_u_1_x +
-            axis_z_tube_axes2_in_base_y*tube_u_1_y + axis_z_tube_axes2_in_base_z*tube_u_1_z -
-            tube_bias_z;
+        const real tube_rel_o_in_axes2_y = axis_y_tube_axes2_x*tube_u_1_x +
+            axis_y_tube_axes2_y*tube_u_1_y + axis_y_tube_axes2_z*tube_u_1_z -
+            tube_bias_in_axes2_y;
+        const real tube_rel_o_in_axes2_z = axis_z_tube_axes2_x*tube_u_1_x +
+            axis_z_tube_axes2_y*tube_u_1_y + axis_z_tube_axes2_z*tube_u_1_z -
+            tube_bias_in_axes2_z;
         /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_nd_m1_y = tube_end_p1_r3_x*tube_omega_1_t_2 +
-            tube_end_p1_r3_x*tube_omega_tip_y - tube_end_p1_r3_y*tube_omega_tip_x;
-        const real tube_nd_m1_z = tube_end_p1_r3_x*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_x - tube_end_p1_r3_x*tube_qd_3_t_8;
+        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
+        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
         /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x;
-        const real tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y;
-        const real tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8;
-        const real tube_nu_1_t_4 = tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y;
+        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
+        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
+        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
         /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_nd_m2_x = tube_end_p2_r1_x*tube_omega_tip_x -
-            tube_end_p2_r1_x*tube_omega_1_t - tube_end_p2_r3_x*tube_omega_tip_z;
-        const real tube_nd_m2_y = tube_end_p2_r1_x*tube_omega_1_t_2 +
-            tube_end_p2_r1_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_z;
+        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
+        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
+        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
         /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 - tube_end_p2_r3_x*tube_omega_1_t) -
-            tube_nd_m2_y*tube_nu_1_t_2;
+        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
+            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
+        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
         const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
         /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_nd_m3_x = tube_end_p3_r3_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_omega_1_t - tube_end_p3_r3_y*tube_omega_tip_x;
-        const real tube_nd_m3_z = tube_end_p3_r1_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_qd_3_t_8 - tube_end_p3_r3_y*tube_omega_tip_z;
+        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
+        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
+        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
         /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 + tube_end_p3_r3_x*tube_omega_1_t) -
-            tube_nd_m3_z*tube_nu_1_t_3;
-        const real tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x;
-        /* (tube-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real tube_qdd_3_o_t = R(1.35)*tube_nu_1;
-        const real tube_qdd_3_o_t_2 = R(1.35)*tube_nu_2;
-        const real tube_qdd_3_o_t_3 = R(1.35)*tube_nu_3;
-        const real tube_qdd_3_o_t_4 = inv_tube_w_1_t_157*(tube_qdd_3_o_t*tube_w_1_t_78 +
-            tube_qdd_3_o_t_2*tube_w_1_t_79 + tube_qdd_3_o_t_3*tube_w_1_t_80 +
-            tube_rel_o_y*tube_w_1_t_76 + tube_rel_o_z*tube_w_1_t_77);
-        const real tube_qdd_3_o_t_5 = inv_tube_w_1_t_129*(tube_qdd_3_o_t*tube_w_1_t_66 +
-            tube_qdd_3_o_t_3*tube_w_1_t_68 + tube_rel_o_y*tube_w_1_t_64 +
-            tube_rel_o_z*tube_w_1_t_65 - tube_qdd_3_o_t_2*tube_w_1_t_67 -
-            tube_qdd_3_o_t_4*tube_w_1_t_69);
-        const real tube_qdd_3_o_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_o_z +
-            tube_qdd_3_o_t*tube_w_1_t_51 + tube_qdd_3_o_t_3*tube_w_1_t_52 +
-            tube_qdd_3_o_t_4*tube_w_1_t_58 + tube_qdd_3_o_t_5*tube_w_1_t_53 +
-            tube_rel_o_y*tube_w_1_t_50);
-        const real tube_qdd_3_o_t_7 = tube_qdd_3_o_t*tube_w_1_t_15 +
-            tube_qdd_3_o_t_3*tube_w_1_t_16 + tube_qdd_3_o_t_6*tube_w_1_t_21 +
-            tube_rel_o_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_3_o_t*tube_w_1_t_35 +
-            tube_qdd_3_o_t_3*tube_w_1_t_36 + tube_qdd_3_o_t_4*tube_w_1_t_45 +
-            tube_qdd_3_o_t_5*tube_w_1_t_41 + tube_rel_o_y*tube_w_1_t_34 -
-            tube_qdd_3_o_t_6*tube_w_1_t_37) - tube_qdd_3_o_t_4*tube_w_1_t_29 -
-            tube_qdd_3_o_t_5*tube_w_1_t_25;
-        const real tube_qdd_3_o_t_8 = inv_tube_w_1_t_16*tube_qdd_3_o_t_7;
+        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
+        /* (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
+        const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
+        const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
+        const real tube_qdd_1_o = inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t +
+            tube_m2_w_1_t*tube_qdd_1_o_t_2 + tube_m3_w_1_t*tube_qdd_1_o_t_3 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_76 + tube_rel_o_in_axes2_z*tube_w_1_t_77);
+        /* (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real tube_qdd_2_o_t = inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 +
+            tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_o_in_axes2_z*tube_w_1_t_65 - tube_qdd_1_o*tube_w_1_t_69 -
+            tube_qdd_1_o_t_2*tube_w_1_t_67);
+        const real tube_qdd_2_o_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
+            tube_qdd_1_o*tube_w_1_t_58 + tube_qdd_1_o_t*tube_w_1_t_51 +
+            tube_qdd_1_o_t_3*tube_w_1_t_52 + tube_qdd_2_o_t*tube_w_1_t_53 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_50);
+        const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*tube_w_1_t_15 +
+            tube_qdd_1_o_t_3*tube_w_1_t_16 + tube_qdd_2_o_t_2*tube_w_1_t_21 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1_o*tube_w_1_t_45 +
+            tube_qdd_1_o_t*tube_w_1_t_35 + tube_qdd_1_o_t_3*tube_w_1_t_36 +
+            tube_qdd_2_o_t*tube_w_1_t_41 + tube_rel_o_in_axes2_y*tube_w_1_t_34 -
+            tube_qdd_2_o_t_2*tube_w_1_t_37) - tube_qdd_1_o*tube_w_1_t_29 -
+            tube_qdd_2_o_t*tube_w_1_t_25;
+        const real tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
+        /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real tube_dalpha_alpha_1_t = -tube_c_2*tube_o_1_in_axes2_x;
+        const real tube_dalpha_alpha_1_in_axes2_xy = tube_o_1_in_axes2_y*tube_s_2;
+        const real tube_dalpha_alpha_1_t_2 = -tube_c_2*tube_o_1_in_axes2_y;
+        const real tube_dalpha_alpha_1_in_axes2_xx = tube_o_1_in_axes2_x*tube_s_2;
+        const real tube_dalpha_alpha_1_in_axes2_xz = tube_o_1_in_axes2_z*tube_s_2;
+        const real tube_dalpha_alpha_1_t_3 = -tube_c_2*tube_o_1_in_axes2_z;
+        /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real tube_d_alpha_1_in_axes2_xy = tube_s_2*tube_w_1_in_axes2_y;
+        const real tube_d_alpha_1_in_axes2_xz = tube_s_2*tube_w_1_in_axes2_z;
+        const real tube_d_alpha_1_t = -tube_c_2*tube_w_1_in_axes2_z;
         /* (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real tube_alpha_1_o_t = tube_qdd_3_o_t_4*tube_s_2;
-        const real tube_alpha_1_o_t_2 = tube_c_2*tube_qdd_3_o_t_4;
+        const real tube_alpha_1_o_in_axes2_x = tube_qdd_1_o*tube_s_2;
+        const real tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o;
         /* (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real tube_alpha_2_o_x = tube_alpha_1_o_t - tube_zeta_2_x;
-        const real tube_alpha_2_o_y = -tube_alpha_1_o_t_2 - tube_zeta_2_y;
+        const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
+        const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
         /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real tube_B_2_o_xy = -tube_W_2_xy - tube_qdd_3_o_t_8;
-        const real tube_B_2_o_yx = tube_qdd_3_o_t_8 - tube_W_2_xy;
-        const real tube_B_2_o_zx = tube_zeta_2_y - tube_alpha_2_o_y;
-        const real tube_B_2_o_zy = tube_alpha_2_o_x - tube_zeta_2_x;
+        const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
+        const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
+        const real tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
+        const real tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
+        /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_root_2;
+        /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
+           3, less gravity */
+        const real tube_d_acc_3_in_axes2_yy = tube_root_2*tube_w_2_in_axes2_y;
+        const real tube_d_acc_3_in_axes2_yz = tube_root_2*tube_w_2_in_axes2_z;
+        const real tube_d_acc_3_in_axes2_zy = tube_root_2*tube_w_1_t_78;
+        const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_root_2;
         /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real tube_g_r0_x = m->tube_g_r0_x[i];
-        const real tube_g_r0_y = m->tube_g_r0_y[i];
-        const real tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x;
-        const real tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1;
-        const real tube_g_r0_z = m->tube_g_r0_z[i];
-        const real tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y;
-        const real tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2;
-        const real tube_acc_3_o_x = axis_x_tube_axes2_x*tube_u_1_x +
-            axis_x_tube_axes2_y*tube_u_1_y + axis_x_tube_axes2_z*tube_u_1_z - tube_g_r3_x;
-        const real tube_acc_3_o_y = tube_bias_t_4 + tube_qdd_3_o_t_8*tube_root_2 - tube_bias_t_2 -
-            tube_g_r3_y;
-        const real tube_acc_3_o_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x -
-            tube_alpha_2_o_y*tube_root_2;
+        const real tube_acc_3_t = m->tube_acc_3_t[i];
+        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
+        const real tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
+        const real tube_acc_3_o_t = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
+        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
+        const real tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_s_2;
+        const real tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_o_t*tube_s_2;
+        const real tube_acc_3_o_in_axes2_x = axis_x_tube_axes2_x*tube_u_1_x +
+            axis_x_tube_axes2_y*tube_u_1_y + axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x;
+        const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + tube_qdd_2_o*tube_root_2 -
+            tube_bias_t_2 - tube_g_in_axes2_y;
+        const real tube_acc_3_o_in_axes2_z = tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z -
+            tube_alpha_2_o_in_axes2_y*tube_root_2;
         /* (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real tube_f_3_o_x = tube_acc_3_o_x*tube_link3_mass - tube_B_2_o_xy*tube_h_3_z -
-            tube_alpha_1_o_t_2*tube_h_3_y - tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3);
-        const real tube_f_3_o_y = tube_B_2_o_yx*tube_h_3_x + tube_acc_3_o_y*tube_link3_mass +
-            tube_h_3_z*(tube_W_2_t + tube_W_2_t_3) - tube_alpha_1_o_t*tube_h_3_y;
-        const real tube_f_3_o_z = tube_B_2_o_zx*tube_h_3_x + tube_acc_3_o_z*tube_link3_mass -
-            tube_B_2_o_zy*tube_h_3_z - tube_h_3_y*(tube_W_2_t + tube_W_2_t_2);
+        const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
+        const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
+        const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
+        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
+        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
+        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
+        const real tube_link3_mass = m->tube_link3_mass[i];
+        const real tube_f_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y + tube_h_3_in_spec2_x*(-tube_f_3_o_t_2 -
+            tube_f_3_o_t_3) - tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z;
+        const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_acc_3_o_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_o_t +
+            tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y;
+        const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x +
+            tube_acc_3_o_in_axes2_z*tube_link3_mass - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z -
+            tube_h_3_in_spec2_y*(tube_f_3_o_t + tube_f_3_o_t_2);
         /* (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real tube_Sigma_2_yy = m->tube_Sigma_2_yy[i];
-        const real tube_Sigma_2_zz = m->tube_Sigma_2_zz[i];
-        const real tube_h_2_y = m->tube_h_2_y[i];
-        const real tube_h_2_z = m->tube_h_2_z[i];
-        const real tube_mu_2_o_x = tube_B_2_o_yx*tube_J_group_2_xz + tube_B_2_o_zy*tube_Sigma_2_yy
-            + tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_o_t +
-            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_o_zx*tube_J_group_2_xy -
-            tube_acc_3_o_y*tube_h_3_y - tube_acc_3_o_z*tube_h_3_z;
-        const real tube_Sigma_2_xx = m->tube_Sigma_2_xx[i];
-        const real tube_h_2_x = m->tube_h_2_x[i];
-        const real tube_mu_2_o_y = tube_B_2_o_zy*tube_J_group_2_xy + tube_acc_3_o_x*tube_h_3_y +
-            tube_g_r1_x*tube_h_2_x - tube_B_2_o_xy*tube_J_group_2_yz -
-            tube_B_2_o_zx*tube_Sigma_2_xx - tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) -
-            tube_Sigma_2_zz*tube_alpha_1_o_t_2 - tube_acc_3_o_z*tube_h_3_x -
-            tube_g_r3_x*tube_h_2_y;
-        const real tube_mu_2_o_z = tube_B_2_o_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t -
-            tube_W_2_t_2) + tube_J_group_2_xz*tube_alpha_1_o_t + tube_acc_3_o_x*tube_h_3_z +
-            tube_acc_3_o_y*tube_h_3_x - tube_B_2_o_xy*tube_Sigma_2_yy -
-            tube_J_group_2_yz*tube_alpha_1_o_t_2 - tube_g_r3_x*tube_h_2_z -
-            tube_g_r3_y*tube_h_2_x;
+        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
+        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
+        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
+        const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
+        const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
+        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
+        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
+        const real tube_mu_2_o_in_axes2_x = tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
+            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z;
+        const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
+        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
+        const real tube_mu_2_o_in_axes2_y = tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
+            tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - tube_g_in_axes2_x*tube_h_2_in_spec2_y;
+        const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+            tube_J_group_2_in_axes2_xy*(tube_f_3_o_t - tube_f_3_o_t_2) +
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
+            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
+        /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
+           outwards, the force at the connection point left out */
+        const real tube_J_group_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i];
+        const real tube_dalpha_N_2_in_axes2_zx =
+            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
+            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
+            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t;
+        const real tube_dalpha_N_2_in_axes2_zy =
+            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
+            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
+            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2;
+        const real tube_dalpha_N_2_in_axes2_zz =
+            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
+            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
+            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3;
+        /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
+           outwards, the force at the connection point left out */
+        const real tube_d_N_2_in_axes2_zy = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xy
+            + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
+            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y -
+            tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_w_1_t_78;
+        const real tube_d_N_2_in_axes2_zz = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz
+            + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
+            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
+            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t;
         /* (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real tube_N_2_o_y = tube_mu_2_o_y - tube_f_3_o_z*tube_root_2;
-        const real tube_N_2_o_z = tube_mu_2_o_z + tube_f_3_o_y*tube_root_2;
+        const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
+            tube_f_3_o_in_axes2_z*tube_root_2;
+        const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
+            tube_f_3_o_in_axes2_y*tube_root_2;
+        /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real tube_J_group_2_in_axes2_yy = m->tube_J_group_2_in_axes2_yy[i];
+        const real tube_dalpha_Gamma_1_t =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
+            tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z));
+        const real tube_J_group_2_in_axes2_xx = m->tube_J_group_2_in_axes2_xx[i];
+        const real tube_dalpha_Gamma_1_in_axes2_x = tube_dalpha_Gamma_1_t +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
+            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z);
+        const real tube_dalpha_Gamma_1_t_2 =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
+        const real tube_dalpha_Gamma_1_in_axes2_y = tube_dalpha_Gamma_1_t_2 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
+            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z);
+        const real tube_dalpha_Gamma_1_t_3 =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
+        const real tube_dalpha_Gamma_1_in_axes2_z = tube_dalpha_Gamma_1_t_3 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
+            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
+        /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real tube_d_Gamma_1_in_axes2_x = tube_c_2*tube_h_3_in_spec2_y;
+        const real tube_d_Gamma_1_t =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
+            tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
+        const real tube_d_Gamma_1_in_axes2_y = tube_d_Gamma_1_t +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
+            tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
+            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z);
+        const real tube_d_Gamma_1_t_2 =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
+            tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_d_alpha_1_t*tube_h_3_in_spec2_x -
+            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
+        const real tube_d_Gamma_1_in_axes2_z = tube_d_Gamma_1_t_2 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
+            tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
+            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
+        /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
+            + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
+        const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
+            + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y;
+        const real tube_dalpha_G_in_axes2_yz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y
+            + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
+        const real tube_dalpha_G_in_axes2_zx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z
+            + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z;
+        const real tube_dalpha_G_in_axes2_zy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z
+            + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z;
+        const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
+            + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
+        /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
+            tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
         /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real tube_G_o_t = inv_tube_w_1_t_16*tube_N_2_o_z;
-        const real tube_G_o_t_2 = inv_tube_w_1_t_57*tube_G_o_t*tube_w_1_t_17;
-        const real tube_G_o_t_3 = inv_tube_w_1_t_95*(tube_G_o_t*tube_w_1_t_21 -
+        const real tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
+        const real tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17;
+        const real tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 -
             tube_G_o_t_2*tube_w_1_t_37);
-        const real tube_G_o_t_4 = inv_tube_w_1_t_129*(tube_G_o_t_2*tube_w_1_t_41 +
+        const real tube_G_o_t_4 = inv_tube_w_1_t_63*(tube_G_o_t_2*tube_w_1_t_41 +
             tube_G_o_t_3*tube_w_1_t_53 - tube_G_o_t*tube_w_1_t_25);
-        const real tube_G_o_t_5 = inv_tube_w_1_t_157*(tube_G_o_t_2*tube_w_1_t_45 +
-            tube_G_o_t_3*tube_w_1_t_58 + tube_mu_2_o_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 -
-            tube_G_o_t_4*tube_w_1_t_69 - tube_N_2_o_y*tube_c_2);
-        const real tube_G_o_t_6 = tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 +
+        const real tube_G_o_t_5 = inv_tube_w_1_t_75*(tube_G_o_t_2*tube_w_1_t_45 +
+            tube_G_o_t_3*tube_w_1_t_58 + tube_N_2_o_in_axes2_y*tube_c_2 +
+            tube_mu_2_o_in_axes2_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 -
+            tube_G_o_t_4*tube_w_1_t_69);
+        const real tube_G_o_in_axes2_y = tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 +
             tube_G_o_t_3*tube_w_1_t_50 + tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_w_1_t_76;
-        const real tube_G_o_t_7 = inv_tube_w_1_t_95*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 +
-            tube_G_o_t_5*tube_w_1_t_77;
-        const real tube_G_o_t_8 = tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 +
-            tube_G_o_t_3*tube_w_1_t_51 + tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_w_1_t_78;
-        const real tube_G_o_t_9 = R(1.35)*tube_G_o_t_8;
-        const real tube_G_o_t_10 = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_w_1_t_79;
-        const real tube_G_o_t_11 = R(1.35)*tube_G_o_t_10;
-        const real tube_G_o_t_12 = tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 +
-            tube_G_o_t_3*tube_w_1_t_52 + tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_w_1_t_80;
-        const real tube_G_o_t_13 = R(1.35)*tube_G_o_t_12;
-        /* (tube-U) velocity and gravity terms of the leg force */
-        const real tube_U_in_base_x = axis_x_tube_axes2_x*tube_f_3_o_x +
-            axis_y_tube_axes2_in_base_x*tube_G_o_t_6 + axis_z_tube_axes2_in_base_x*tube_G_o_t_7;
-        const real tube_U_in_base_y = axis_x_tube_axes2_y*tube_f_3_o_x +
-            axis_y_tube_axes2_in_base_y*tube_G_o_t_6 + axis_z_tube_axes2_in_base_y*tube_G_o_t_7;
-        const real tube_U_in_base_z = axis_x_tube_axes2_z*tube_f_3_o_x +
-            axis_y_tube_axes2_in_base_z*tube_G_o_t_6 + axis_z_tube_axes2_in_base_z*tube_G_o_t_7;
+        const real tube_G_o_in_axes2_z = inv_tube_w_1_t_49*tube_G_o_t_3 +
+            tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77;
+        /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
+            tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
+        const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
+            tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2;
+        const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
+            tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
+        /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real tube_d_G_m1_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 +
+            tube_h_3_in_spec2_z*tube_m1_w_2;
+        const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
+            tube_d_N_2_in_axes2_zy*tube_m1_w_2;
+        const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
+            tube_d_N_2_in_axes2_zz*tube_m1_w_2;
+        /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_G_m1_o_t = tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 +
+            tube_G_o_t_3*tube_w_1_t_51 + tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_m1_w_1_t;
+        const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
+        /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
+            tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
+        const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
+            tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2;
+        const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
+            tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
+        /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
+           the leg's inertia and weight along all freedoms */
+        const real tube_d_G_m2_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 +
+            tube_h_3_in_spec2_z*tube_m2_w_2;
+        const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
+            tube_d_N_2_in_axes2_zy*tube_m2_w_2;
+        const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
+            tube_d_N_2_in_axes2_zz*tube_m2_w_2;
+        /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_m2_w_1_t;
+        const real tube_G_m2_o = -R(1.35)*tube_G_m2_o_t;
+        /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
+            tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
+        const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
+            tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2;
+        const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
+            tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
+        /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
+           the leg's inertia and weight along all freedoms */
+        const real tube_d_G_m3_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 +
+            tube_h_3_in_spec2_z*tube_m3_w_2;
+        const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
+            tube_d_N_2_in_axes2_zy*tube_m3_w_2;
+        const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
+            tube_d_N_2_in_axes2_zz*tube_m3_w_2;
+        /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_G_m3_o_t = tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 +
+            tube_G_o_t_3*tube_w_1_t_52 + tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_m3_w_1_t;
+        const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
+        /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_dalpha_G_m_in_axes2_xx =
+            -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_xy =
+            -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_y*tube_end_p3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_xz =
+            -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_z*tube_end_p3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yx = tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y
+            - tube_dalpha_G_m1_in_axes2_x*tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yy = tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y
+            - tube_dalpha_G_m1_in_axes2_y*tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yz = tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y
+            - tube_dalpha_G_m1_in_axes2_z*tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zx = tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z
+            + tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zy = tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z
+            + tube_dalpha_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zz = tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z
+            + tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
+        /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_y*tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_z*tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_x*tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_y*tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_z*tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
         /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
            balances the leg's inertia and weight along all freedoms */
-        const real tube_G_m_o_x = tube_G_o_t_11*tube_end_p2_r3_y - tube_G_o_t_13*tube_end_p3_r1_x;
-        const real tube_G_m_o_y = -tube_G_o_t_11*tube_end_p2_r3_x - tube_G_o_t_9*tube_end_p1_r1_x;
-        const real tube_G_m_o_z = tube_G_o_t_13*tube_end_p3_r3_x + tube_G_o_t_9*tube_end_p1_r3_y;
+        const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*tube_end_p2_in_axes2_y -
+            tube_G_m3_o*tube_end_p3_in_axes2_z;
+        const real tube_G_m_o_in_axes2_y = tube_G_m2_o*tube_n_m2_in_axes2_y -
+            tube_G_m1_o*tube_end_p1_in_axes2_z;
+        const real tube_G_m_o_in_axes2_z = tube_G_m1_o*tube_n_m1_in_axes2_z +
+            tube_G_m3_o*tube_n_m3_in_axes2_z;
+        /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y -
+            tube_h_3_in_spec2_z*tube_o_2_in_axes2_x;
+        const real tube_dalpha_c_in_axes2_xy = tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y -
+            tube_h_3_in_spec2_z*tube_o_2_in_axes2_y;
+        const real tube_dalpha_c_in_axes2_xz = tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y -
+            tube_h_3_in_spec2_z*tube_o_2_in_axes2_z;
+        /* (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real tube_d_c_in_axes2_xy = tube_h_3_in_spec2_y*tube_w_1_t_78 -
+            tube_h_3_in_spec2_z*tube_w_2_in_axes2_y;
+        const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*tube_h_3_in_spec2_y -
+            tube_h_3_in_spec2_z*tube_w_2_in_axes2_z;
+        /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
+            tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - tube_link3_mass;
+        const real tube_Q_t_2 = R(0.5)*tube_Q_t;
+        const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
+            tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - tube_link3_mass;
+        const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
+        const real tube_Q_t_5 = axis_y_tube_axes2_x*tube_Q_t_2 +
+            axis_z_tube_axes2_x*tube_d_G_in_axes2_yz - axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_6 = axis_y_tube_axes2_y*tube_Q_t_2 +
+            axis_z_tube_axes2_y*tube_d_G_in_axes2_yz - axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_7 = axis_y_tube_axes2_z*tube_Q_t_2 +
+            axis_z_tube_axes2_z*tube_d_G_in_axes2_yz - axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_8 = axis_z_tube_axes2_x*tube_Q_t_4 -
+            axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_9 = axis_z_tube_axes2_y*tube_Q_t_4 -
+            axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_10 = axis_z_tube_axes2_z*tube_Q_t_4 -
+            axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_11 = axis_y_tube_axes2_x*tube_Q_t_5 + axis_z_tube_axes2_x*tube_Q_t_8;
+        const real tube_Q_xx = 2*tube_Q_t_11 + tube_link3_mass;
+        const real tube_Q_xy = axis_y_tube_axes2_x*tube_Q_t_6 + axis_y_tube_axes2_y*tube_Q_t_5 +
+            axis_z_tube_axes2_x*tube_Q_t_9 + axis_z_tube_axes2_y*tube_Q_t_8;
+        const real tube_Q_xz = axis_y_tube_axes2_x*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_5 +
+            axis_z_tube_axes2_x*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_8;
+        const real tube_Q_t_12 = axis_y_tube_axes2_y*tube_Q_t_6 + axis_z_tube_axes2_y*tube_Q_t_9;
+        const real tube_Q_yy = 2*tube_Q_t_12 + tube_link3_mass;
+        const real tube_Q_yz = axis_y_tube_axes2_y*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_6 +
+            axis_z_tube_axes2_y*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_9;
+        const real tube_Q_t_13 = axis_y_tube_axes2_z*tube_Q_t_7 + axis_z_tube_axes2_z*tube_Q_t_10;
+        const real tube_Q_zz = 2*tube_Q_t_13 + tube_link3_mass;
+        /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
+           actuation */
+        const real tube_dalpha_c_m_zz =
+            axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
+            axis_y_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
+            axis_z_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz);
+        /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
+           actuation */
+        const real tube_d_c_m_t = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
+            axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx;
+        const real tube_d_c_m_t_2 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
+            axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx;
+        const real tube_d_c_m_t_3 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
+            axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy;
+        const real tube_d_c_m_t_4 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
+            axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy;
+        const real tube_d_c_m_t_5 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
+            axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz;
+        const real tube_d_c_m_t_6 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
+            axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz;
+        const real tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t +
+            axis_y_tube_axes2_x*tube_d_c_m_t_3 + axis_z_tube_axes2_x*tube_d_c_m_t_5;
+        const real tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t +
+            axis_y_tube_axes2_y*tube_d_c_m_t_3 + axis_z_tube_axes2_y*tube_d_c_m_t_5;
+        const real tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t +
+            axis_y_tube_axes2_z*tube_d_c_m_t_3 + axis_z_tube_axes2_z*tube_d_c_m_t_5;
+        const real tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2 +
+            axis_y_tube_axes2_x*tube_d_c_m_t_4 + axis_z_tube_axes2_x*tube_d_c_m_t_6;
+        /* (tube-U) velocity and gravity terms of the leg force */
+        const real tube_U_x = axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
+            axis_y_tube_axes2_x*tube_G_o_in_axes2_y + axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
+        const real tube_U_y = axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
+            axis_y_tube_axes2_y*tube_G_o_in_axes2_y + axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
+        const real tube_U_z = axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
+            axis_y_tube_axes2_z*tube_G_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
+        /* (M_ta) coupling block of M */
+        const real tube_M_ta_t = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx;
+        const real tube_M_ta_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx;
+        const real tube_M_ta_t_3 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx;
+        const real tube_M_ta_t_4 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy;
+        const real tube_M_ta_t_5 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy;
+        const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy;
+        const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz;
+        const real tube_M_ta_t_8 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz;
+        const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz;
+        const real tube_M_ta_t_10 = tube_Q_xy*tube_q_z;
+        const real tube_M_ta_t_11 = tube_Q_xz*tube_q_y;
+        const real tube_M_ta_t_12 = tube_Q_yz*tube_q_x;
+        const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
+            axis_x_tube_axes2_x*tube_M_ta_t - axis_y_tube_axes2_x*tube_M_ta_t_4 -
+            axis_z_tube_axes2_x*tube_M_ta_t_7;
+        const real tube_M_ta_t_14 = tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
+            axis_y_tube_axes2_y*tube_M_ta_t_4 - axis_z_tube_axes2_y*tube_M_ta_t_7 -
+            tube_Q_xz*tube_q_x;
+        const real tube_M_ta_t_15 = tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
+            axis_y_tube_axes2_z*tube_M_ta_t_4 - axis_z_tube_axes2_z*tube_M_ta_t_7 -
+            tube_Q_xx*tube_q_y;
+        const real tube_M_ta_t_16 = tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
+            axis_y_tube_axes2_x*tube_M_ta_t_5 - axis_z_tube_axes2_x*tube_M_ta_t_8 -
+            tube_Q_yy*tube_q_z;
+        const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
+            axis_x_tube_axes2_y*tube_M_ta_t_2 - axis_y_tube_axes2_y*tube_M_ta_t_5 -
+            axis_z_tube_axes2_y*tube_M_ta_t_8;
+        const real tube_M_ta_t_18 = tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
+            axis_y_tube_axes2_z*tube_M_ta_t_5 - axis_z_tube_axes2_z*tube_M_ta_t_8 -
+            tube_Q_xy*tube_q_y;
+        const real tube_M_ta_t_19 = tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
+            axis_y_tube_axes2_x*tube_M_ta_t_6 - axis_z_tube_axes2_x*tube_M_ta_t_9 -
+            tube_Q_yz*tube_q_z;
+        const real tube_M_ta_t_20 = tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
+            axis_y_tube_axes2_y*tube_M_ta_t_6 - axis_z_tube_axes2_y*tube_M_ta_t_9 -
+            tube_Q_zz*tube_q_x;
+        const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
+            axis_x_tube_axes2_z*tube_M_ta_t_3 - axis_y_tube_axes2_z*tube_M_ta_t_6 -
+            axis_z_tube_axes2_z*tube_M_ta_t_9;
+        /* (M_aa) rotational block of M */
+        const real tube_M_aa_t = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx;
+        const real tube_M_aa_t_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx;
+        const real tube_M_aa_t_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy;
+        const real tube_M_aa_t_4 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy;
+        const real tube_M_aa_t_5 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz;
+        const real tube_M_aa_t_6 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz;
+        const real tube_M_aa_t_7 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
+            axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx;
+        const real tube_M_aa_t_8 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
+            axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy;
+        const real tube_M_aa_t_9 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
+            axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
+        const real tube_M_aa_t_10 = tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z -
+            axis_x_tube_axes2_x*tube_M_aa_t - axis_y_tube_axes2_x*tube_M_aa_t_3 -
+            axis_z_tube_axes2_x*tube_M_aa_t_5 - tube_M_ta_t_16*tube_q_z - tube_d_c_m_xz*tube_q_y;
+        const real tube_M_aa_t_11 = tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x -
+            axis_x_tube_axes2_y*tube_M_aa_t - axis_y_tube_axes2_y*tube_M_aa_t_3 -
+            axis_z_tube_axes2_y*tube_M_aa_t_5 - tube_M_ta_t_17*tube_q_z - tube_d_c_m_xx*tube_q_z;
+        const real tube_M_aa_t_12 = tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y -
+            axis_x_tube_axes2_z*tube_M_aa_t - axis_y_tube_axes2_z*tube_M_aa_t_3 -
+            axis_z_tube_axes2_z*tube_M_aa_t_5 - tube_M_ta_t_18*tube_q_z - tube_d_c_m_xy*tube_q_x;
+        const real tube_M_aa_t_13 = tube_M_ta_t_14*tube_q_z +
+            tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 + axis_y_tube_axes2_z*tube_d_c_m_t_4 +
+            axis_z_tube_axes2_z*tube_d_c_m_t_6) - axis_x_tube_axes2_y*tube_M_aa_t_2 -
+            axis_y_tube_axes2_y*tube_M_aa_t_4 - axis_z_tube_axes2_y*tube_M_aa_t_6 -
+            tube_M_ta_t_20*tube_q_x - tube_d_c_m_yx*tube_q_z;
+        const real tube_M_aa_t_14 = tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y -
+            axis_x_tube_axes2_z*tube_M_aa_t_2 - axis_y_tube_axes2_z*tube_M_aa_t_4 -
+            axis_z_tube_axes2_z*tube_M_aa_t_6 - tube_M_ta_t_21*tube_q_x -
+            tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + axis_y_tube_axes2_y*tube_d_c_m_t_4 +
+            axis_z_tube_axes2_y*tube_d_c_m_t_6);
+        const real tube_M_aa_t_15 = tube_M_ta_t_18*tube_q_x +
+            tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 + axis_y_tube_axes2_x*tube_M_aa_t_8 +
+            axis_z_tube_axes2_x*tube_M_aa_t_9) - tube_dalpha_c_m_zz - tube_M_ta_t_15*tube_q_y -
+            tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + axis_y_tube_axes2_y*tube_M_aa_t_8 +
+            axis_z_tube_axes2_y*tube_M_aa_t_9);
         /* (Z_a) rotational part of Z */
-        const real tube_Z_a_t = axis_x_tube_axes2_x*tube_G_m_o_x +
-            axis_y_tube_axes2_in_base_x*tube_G_m_o_y + axis_z_tube_axes2_in_base_x*tube_G_m_o_z +
-            tube_U_in_base_z*tube_q_in_base_y - tube_U_in_base_y*tube_q_in_base_z;
-        const real tube_Z_a_t_2 = axis_x_tube_axes2_y*tube_G_m_o_x +
-            axis_y_tube_axes2_in_base_y*tube_G_m_o_y + axis_z_tube_axes2_in_base_y*tube_G_m_o_z +
-            tube_U_in_base_x*tube_q_in_base_z - tube_U_in_base_z*tube_q_in_base_x;
-        const real tube_Z_a_t_3 = axis_x_tube_axes2_z*tube_G_m_o_x +
-            axis_y_tube_axes2_in_base_z*tube_G_m_o_y + axis_z_tube_axes2_in_base_z*tube_G_m_o_z +
-            tube_U_in_base_y*tube_q_in_base_x - tube_U_in_base_x*tube_q_in_base_y;
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4;
-        const real tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5;
-        const real tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 -
-            tube_end_p3_r3_x*tube_f_c1_t_5;
+        const real tube_Z_a_t = axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
+            axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z
+            + tube_U_z*tube_q_y - tube_U_y*tube_q_z;
+        const real tube_Z_a_t_2 = axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
+            axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z
+            + tube_U_x*tube_q_z - tube_U_z*tube_q_x;
+        const real tube_Z_a_t_3 = axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
+            axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z
+            + tube_U_y*tube_q_x - tube_U_x*tube_q_y;
         /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_z;
-        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_x;
-        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_y;
+        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y + axis_y_tube_axes2_z*tube_q_y +
+            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_y*tube_q_z;
+        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_x*tube_q_z + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_z*tube_q_x;
+        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_y*tube_q_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_x*tube_q_y;
         /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c1 = tube_rel_o_y - tube_f_c1_t_4*tube_nu_1 -
-            tube_f_c1_t_5*tube_nu_3;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t;
-        const real tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2;
-        const real tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t;
+        const real tube_gamma_c1 = tube_rel_o_in_axes2_y - tube_m1_c1_t*tube_nu_1 -
+            tube_m3_c1_t*tube_nu_3;
         /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = axis_y_tube_axes2_in_base_x*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_z;
-        const real tube_Hk_a_2_y = axis_y_tube_axes2_in_base_y*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_x;
-        const real tube_Hk_a_2_z = axis_y_tube_axes2_in_base_z*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_y;
+        const real tube_Hk_a_2_x = axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z + axis_z_tube_axes2_z*tube_q_y -
+            axis_x_tube_axes2_x*tube_mu_c2_t - axis_z_tube_axes2_y*tube_q_z;
+        const real tube_Hk_a_2_y = axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_x*tube_q_z + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t - axis_z_tube_axes2_z*tube_q_x;
+        const real tube_Hk_a_2_z = axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_y*tube_q_x + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_z*tube_mu_c2_t - axis_z_tube_axes2_x*tube_q_y;
         /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c2 = tube_rel_o_z + tube_f_c2_t_2*tube_nu_3 - tube_f_c2_t*tube_nu_1;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y -
-            tube_end_p3_r1_x*tube_mu3_c3;
-        const real tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x +
-            tube_end_p1_r1_x*tube_mu1_c3;
-        const real tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3;
-        const real tube_mu_c3_in_base_x = axis_x_tube_axes2_x*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_x*tube_mu_c3_y + axis_z_tube_axes2_in_base_x*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_y = axis_x_tube_axes2_y*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_y*tube_mu_c3_y + axis_z_tube_axes2_in_base_y*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_z = axis_x_tube_axes2_z*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c3_y + axis_z_tube_axes2_in_base_z*tube_mu_c3_z;
+        const real tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 -
+            tube_m1_c2_t*tube_nu_1;
         /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
            */
         const real tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 -
-            tube_mu1_c3*tube_nu_1;
-        terms[0*count + k] = add ? terms[0*count + k] + tube_Q_t_12 : tube_Q_t_12;  /* total_tube_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + tube_Q_t_13 : tube_Q_t_13;  /* total_tube_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + tube_Q_t_14 : tube_Q_t_14;  /* total_tube_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + tube_Q_t_16 : tube_Q_t_16;  /* total_tube_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + tube_Q_t_17 : tube_Q_t_17;  /* total_tube_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + tube_Q_t_19 : tube_Q_t_19;  /* total_tube_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + tube_M_ta_t_4 : tube_M_ta_t_4;  /* total_tube_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + tube_M_ta_t_5 : tube_M_ta_t_5;  /* total_tube_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + tube_M_ta_t_6 : tube_M_ta_t_6;  /* total_tube_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + tube_M_ta_t_7 : tube_M_ta_t_7;  /* total_tube_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + tube_M_ta_t_8 : tube_M_ta_t_8;  /* total_tube_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + tube_M_ta_t_9 : tube_M_ta_t_9;  /* total_tube_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + tube_M_ta_t_10 : tube_M_ta_t_10;  /* total_tube_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + tube_M_ta_t_11 : tube_M_ta_t_11;  /* total_tube_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + tube_M_ta_t_12 : tube_M_ta_t_12;  /* total_tube_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + tube_M_aa_t : tube_M_aa_t;  /* total_tube_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + tube_M_aa_t_2 : tube_M_aa_t_2;  /* total_tube_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + tube_M_aa_t_3 : tube_M_aa_t_3;  /* total_tube_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + tube_M_aa_t_4 : tube_M_aa_t_4;  /* total_tube_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + tube_M_aa_t_5 : tube_M_aa_t_5;  /* total_tube_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + tube_M_aa_t_6 : tube_M_aa_t_6;  /* total_tube_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + tube_U_in_base_x : tube_U_in_base_x;  /* total_tube_x */
-        terms[22*count + k] = add ? terms[22*count + k] + tube_U_in_base_y : tube_U_in_base_y;  /* total_tube_y */
-        terms[23*count + k] = add ? terms[23*count + k] + tube_U_in_base_z : tube_U_in_base_z;  /* total_tube_z */
-        terms[24*count + k] = add ? terms[24*count + k] + tube_Z_a_t : tube_Z_a_t;  /* total_tube_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + tube_Z_a_t_2 : tube_Z_a_t_2;  /* total_tube_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + tube_Z_a_t_3 : tube_Z_a_t_3;  /* total_tube_z_2 */
-        o[0*count + k] = axis_y_tube_axes2_in_base_x;
-        o[1*count + k] = axis_y_tube_axes2_in_base_y;
-        o[2*count + k] = axis_y_tube_axes2_in_base_z;
+            tube_mu1_c3_t*tube_nu_1;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + tube_Q_xx : tube_Q_xx;  /* M_tt_tube_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + tube_Q_xy : tube_Q_xy;  /* M_tt_tube_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + tube_Q_xz : tube_Q_xz;  /* M_tt_tube_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + tube_Q_yy : tube_Q_yy;  /* M_tt_tube_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + tube_Q_yz : tube_Q_yz;  /* M_tt_tube_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + tube_Q_zz : tube_Q_zz;  /* M_tt_tube_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + tube_M_ta_t_13 : tube_M_ta_t_13;  /* M_ta_tube_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + tube_M_ta_t_14 : tube_M_ta_t_14;  /* M_ta_tube_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + tube_M_ta_t_15 : tube_M_ta_t_15;  /* M_ta_tube_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + tube_M_ta_t_16 : tube_M_ta_t_16;  /* M_ta_tube_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + tube_M_ta_t_17 : tube_M_ta_t_17;  /* M_ta_tube_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + tube_M_ta_t_18 : tube_M_ta_t_18;  /* M_ta_tube_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + tube_M_ta_t_19 : tube_M_ta_t_19;  /* M_ta_tube_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + tube_M_ta_t_20 : tube_M_ta_t_20;  /* M_ta_tube_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + tube_M_ta_t_21 : tube_M_ta_t_21;  /* M_ta_tube_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + tube_M_aa_t_10 : tube_M_aa_t_10;  /* M_aa_tube_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + tube_M_aa_t_11 : tube_M_aa_t_11;  /* M_aa_tube_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + tube_M_aa_t_12 : tube_M_aa_t_12;  /* M_aa_tube_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + tube_M_aa_t_13 : tube_M_aa_t_13;  /* M_aa_tube_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + tube_M_aa_t_14 : tube_M_aa_t_14;  /* M_aa_tube_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + tube_M_aa_t_15 : tube_M_aa_t_15;  /* M_aa_tube_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + tube_U_x : tube_U_x;  /* Z_t_tube_x */
+        terms[22*count + k] = add ? terms[22*count + k] + tube_U_y : tube_U_y;  /* Z_t_tube_y */
+        terms[23*count + k] = add ? terms[23*count + k] + tube_U_z : tube_U_z;  /* Z_t_tube_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + tube_Z_a_t : tube_Z_a_t;  /* Z_a_tube_x */
+        terms[25*count + k] = add ? terms[25*count + k] + tube_Z_a_t_2 : tube_Z_a_t_2;  /* Z_a_tube_y */
+        terms[26*count + k] = add ? terms[26*count + k] + tube_Z_a_t_3 : tube_Z_a_t_3;  /* Z_a_tube_z */
+        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        o[0*count + k] = axis_y_tube_axes2_x;
+        o[1*count + k] = axis_y_tube_axes2_y;
+        o[2*count + k] = axis_y_tube_axes2_z;
+        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
+        /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
         o[6*count + k] = tube_gamma_c1;
-        o[7*count + k] = axis_z_tube_axes2_in_base_x;
-        o[8*count + k] = axis_z_tube_axes2_in_base_y;
-        o[9*count + k] = axis_z_tube_axes2_in_base_z;
+        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        o[7*count + k] = axis_z_tube_axes2_x;
+        o[8*count + k] = axis_z_tube_axes2_y;
+        o[9*count + k] = axis_z_tube_axes2_z;
+        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
         o[10*count + k] = tube_Hk_a_2_x;
         o[11*count + k] = tube_Hk_a_2_y;
         o[12*count + k] = tube_Hk_a_2_z;
+        /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+           */
         o[13*count + k] = tube_gamma_c2;
-        o[14*count + k] = tube_mu_c3_in_base_x;
-        o[15*count + k] = tube_mu_c3_in_base_y;
-        o[16*count + k] = tube_mu_c3_in_base_z;
+        /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+        o[14*count + k] = tube_mu_c3_x;
+        o[15*count + k] = tube_mu_c3_y;
+        o[16*count + k] = tube_mu_c3_z;
+        /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+           */
         o[17*count + k] = tube_gamma_c3;
-        o[19*count + k] = (((axis_y_tube_axes2_in_base_x + axis_y_tube_axes2_in_base_y) +
-            (axis_y_tube_axes2_in_base_z + tube_Hk_a_1_x)) + ((tube_Hk_a_1_y + tube_Hk_a_1_z) +
-            (tube_gamma_c1 + (axis_z_tube_axes2_in_base_x + axis_z_tube_axes2_in_base_y)))) +
-            (((axis_z_tube_axes2_in_base_z + tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) +
-            ((tube_gamma_c2 + tube_mu_c3_in_base_x) + (tube_mu_c3_in_base_y +
-            (tube_mu_c3_in_base_z + tube_gamma_c3))));
+        o[19*count + k] = (((axis_y_tube_axes2_x + axis_y_tube_axes2_y) + (axis_y_tube_axes2_z +
+            tube_Hk_a_1_x)) + ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (tube_gamma_c1 +
+            (axis_z_tube_axes2_x + axis_z_tube_axes2_y)))) + (((axis_z_tube_axes2_z +
+            tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_gamma_c2 + tube_mu_c3_x) +
+            (tube_mu_c3_y + (tube_mu_c3_z + tube_gamma_c3))));
         o[18*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -3302,107 +3427,108 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_tube_xx = sums[27*w + k];
+        const real M_tt_ups_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_tube_xx = sums[27*w + k];
-        const real total_ups_xx = sums[0*w + k];
-        const real M_tt_xx = m_star + total_tube_xx - total_ups_xx;
-        const real total_tube_xy = sums[28*w + k];
-        const real total_ups_xy = sums[1*w + k];
-        const real M_tt_xy = total_tube_xy - total_ups_xy;
-        const real total_tube_xz = sums[29*w + k];
-        const real total_ups_xz = sums[2*w + k];
-        const real M_tt_xz = total_tube_xz - total_ups_xz;
-        const real total_tube_yy = sums[30*w + k];
-        const real total_ups_yy = sums[3*w + k];
-        const real M_tt_yy = m_star + total_tube_yy - total_ups_yy;
-        const real total_tube_yz = sums[31*w + k];
-        const real total_ups_yz = sums[4*w + k];
-        const real M_tt_yz = total_tube_yz - total_ups_yz;
-        const real total_tube_zz = sums[32*w + k];
-        const real total_ups_zz = sums[5*w + k];
-        const real M_tt_zz = m_star + total_tube_zz - total_ups_zz;
+        const real M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star;
+        const real M_tt_tube_xy = sums[28*w + k];
+        const real M_tt_ups_xy = sums[1*w + k];
+        const real M_tt_xy = M_tt_tube_xy + M_tt_ups_xy;
+        const real M_tt_tube_xz = sums[29*w + k];
+        const real M_tt_ups_xz = sums[2*w + k];
+        const real M_tt_xz = M_tt_tube_xz + M_tt_ups_xz;
+        const real M_tt_tube_yy = sums[30*w + k];
+        const real M_tt_ups_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_tube_yy + M_tt_ups_yy + m_star;
+        const real M_tt_tube_yz = sums[31*w + k];
+        const real M_tt_ups_yz = sums[4*w + k];
+        const real M_tt_yz = M_tt_tube_yz + M_tt_ups_yz;
+        const real M_tt_tube_zz = sums[32*w + k];
+        const real M_tt_ups_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_tube_zz + M_tt_ups_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real total_tube_xx_2 = sums[33*w + k];
-        const real total_ups_xx_2 = sums[6*w + k];
-        const real M_ta_xx = total_ups_xx_2 - total_tube_xx_2;
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_tube_xy_2 = sums[34*w + k];
-        const real total_ups_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z + total_tube_xy_2 - total_ups_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_tube_xz_2 = sums[35*w + k];
-        const real total_ups_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_ups_xz_2 - h_star_in_base_y - total_tube_xz_2;
-        const real total_tube_yx = sums[36*w + k];
-        const real total_ups_yx = sums[9*w + k];
-        const real M_ta_yx = total_ups_yx - h_star_in_base_z - total_tube_yx;
-        const real total_tube_yy_2 = sums[37*w + k];
-        const real total_ups_yy_2 = sums[10*w + k];
-        const real M_ta_yy = total_tube_yy_2 - total_ups_yy_2;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_tube_yz_2 = sums[38*w + k];
-        const real total_ups_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_ups_yz_2 - total_tube_yz_2;
-        const real total_tube_zx = sums[39*w + k];
-        const real total_ups_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_ups_zx - total_tube_zx;
-        const real total_tube_zy = sums[40*w + k];
-        const real total_ups_zy = sums[13*w + k];
-        const real M_ta_zy = total_tube_zy - h_star_in_base_x - total_ups_zy;
-        const real total_tube_zz_2 = sums[41*w + k];
-        const real total_ups_zz_2 = sums[14*w + k];
-        const real M_ta_zz = total_tube_zz_2 - total_ups_zz_2;
+        const real M_ta_tube_xx = sums[33*w + k];
+        const real M_ta_ups_xx = sums[6*w + k];
+        const real M_ta_xx = M_ta_tube_xx + M_ta_ups_xx;
+        const real M_ta_tube_xy = sums[34*w + k];
+        const real M_ta_ups_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_tube_xy + M_ta_ups_xy + h_star_z;
+        const real M_ta_tube_xz = sums[35*w + k];
+        const real M_ta_ups_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_tube_xz + M_ta_ups_xz - h_star_y;
+        const real M_ta_tube_yx = sums[36*w + k];
+        const real M_ta_ups_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_tube_yx + M_ta_ups_yx - h_star_z;
+        const real M_ta_tube_yy = sums[37*w + k];
+        const real M_ta_ups_yy = sums[10*w + k];
+        const real M_ta_yy = M_ta_tube_yy + M_ta_ups_yy;
+        const real M_ta_tube_yz = sums[38*w + k];
+        const real M_ta_ups_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_tube_yz + M_ta_ups_yz + h_star_x;
+        const real M_ta_tube_zx = sums[39*w + k];
+        const real M_ta_ups_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_tube_zx + M_ta_ups_zx + h_star_y;
+        const real M_ta_tube_zy = sums[40*w + k];
+        const real M_ta_ups_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_tube_zy + M_ta_ups_zy - h_star_x;
+        const real M_ta_tube_zz = sums[41*w + k];
+        const real M_ta_ups_zz = sums[14*w + k];
+        const real M_ta_zz = M_ta_tube_zz + M_ta_ups_zz;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_tube_xx_3 = sums[42*w + k];
-        const real total_ups_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 + total_tube_xx_3 - total_ups_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_tube_xy_3 = sums[43*w + k];
-        const real total_ups_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_ups_xy_3 - total_tube_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_tube_xz_3 = sums[44*w + k];
-        const real total_ups_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 + total_tube_xz_3 - total_ups_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_tube_yy_3 = sums[45*w + k];
-        const real total_ups_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_tube_yy_3 - total_ups_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_tube_yz_3 = sums[46*w + k];
-        const real total_ups_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_ups_yz_3 - total_tube_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_tube_zz_3 = sums[47*w + k];
-        const real total_ups_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 + total_tube_zz_3 - total_ups_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_tube_xx = sums[42*w + k];
+        const real M_aa_ups_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_tube_xx + M_aa_ups_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_tube_xy = sums[43*w + k];
+        const real M_aa_ups_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_tube_xy + M_aa_ups_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_tube_xz = sums[44*w + k];
+        const real M_aa_ups_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_tube_xz + M_aa_ups_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_tube_yy = sums[45*w + k];
+        const real M_aa_ups_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_tube_yy + M_aa_ups_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_tube_yz = sums[46*w + k];
+        const real M_aa_ups_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_tube_yz + M_aa_ups_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_tube_zz = sums[47*w + k];
+        const real M_aa_ups_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_tube_zz + M_aa_ups_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_tube_x = sums[48*w + k];
-        const real total_ups_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_tube_x + total_ups_x;
+        const real Z_t_tube_x = sums[48*w + k];
+        const real Z_t_ups_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_tube_x + Z_t_ups_x;
         const real Z_p_y = s[28*w + k];
-        const real total_tube_y = sums[49*w + k];
-        const real total_ups_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_tube_y + total_ups_y;
+        const real Z_t_tube_y = sums[49*w + k];
+        const real Z_t_ups_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_tube_y + Z_t_ups_y;
         const real Z_p_z = s[29*w + k];
-        const real total_tube_z = sums[50*w + k];
-        const real total_ups_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_tube_z + total_ups_z;
+        const real Z_t_tube_z = sums[50*w + k];
+        const real Z_t_ups_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_tube_z + Z_t_ups_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_tube_x_2 = sums[51*w + k];
-        const real total_ups_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_tube_x_2 + total_ups_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_tube_y_2 = sums[52*w + k];
-        const real total_ups_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_tube_y_2 + total_ups_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_tube_z_2 = sums[53*w + k];
-        const real total_ups_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_tube_z_2 + total_ups_z_2;
+        const real Z_a_tube_x = sums[51*w + k];
+        const real Z_a_ups_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_tube_x + Z_a_ups_x + Z_q_x;
+        const real Z_a_tube_y = sums[52*w + k];
+        const real Z_a_ups_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_tube_y + Z_a_ups_y + Z_q_y;
+        const real Z_a_tube_z = sums[53*w + k];
+        const real Z_a_ups_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_tube_z + Z_a_ups_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[6*w + k] = M_tt_xy;
@@ -3412,6 +3538,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[8*w + k] = M_tt_yz;
         M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
+        /* (M_ta) coupling block of M */
         M[3*w + k] = M_ta_xx;
         M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
@@ -3430,6 +3557,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[26*w + k] = M_ta_zy;
         M[17*w + k] = M_ta_zz;
         M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -3439,9 +3567,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -3534,37 +3664,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3577,15 +3713,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3603,27 +3739,27 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -3641,141 +3777,135 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = inv_ups_root_2*ups_S_x;
+        const real ups_w_3_y = inv_ups_root_2*ups_S_y;
+        const real ups_w_3_z = inv_ups_root_2*ups_S_z;
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
+        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
-        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
-            inv_ups_root_2*ups_J_group_2_zz);
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
-            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
-        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
-        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
-            inv_ups_root_2*ups_J_group_2_yy));
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
+        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
+        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
+            ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ups_Q_t = R(0.5)*ups_d_c_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
-        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
-            - ups_axis_x_x*ups_d_phi_3_t;
-        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
-            - ups_axis_x_y*ups_d_phi_3_t;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
-            - ups_axis_x_z*ups_d_phi_3_t;
-        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
-            ups_axis_x_x*ups_d_phi_3_t_2;
-        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
-            ups_axis_x_y*ups_d_phi_3_t_2;
-        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
-            ups_axis_x_z*ups_d_phi_3_t_2;
-        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
-        const real ups_Q_t_10 = 2*ups_Q_t_9;
-        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
-        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
-        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
-        const real ups_Q_t_14 = 2*ups_Q_t_13;
-        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
-        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
-            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
-        const real ups_Q_t_17 = 2*ups_Q_t_16;
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z -
+            axis_z_ups_axes2_z*ups_w_3_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x -
+            axis_z_ups_axes2_x*ups_w_3_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y -
+            axis_z_ups_axes2_y*ups_w_3_x;
+        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
+            - ups_d_phi_3_in_axes2_xy*ups_w_3_z;
+        const real ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x;
+        const real ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y;
+        const real ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z;
+        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_xx = -2*ups_Q_t_9;
+        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
+            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
+            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_yy = -2*ups_Q_t_10;
+        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
+            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_zz = -2*ups_Q_t_11;
         /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z;
-        const real ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y;
-        const real ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2;
-        const real ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x;
-        const real ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x;
-        const real ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y;
-        const real ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x;
+        const real ups_M_ta_t = ups_Q_xy*ups_q_z;
+        const real ups_M_ta_t_2 = ups_Q_xz*ups_q_y;
+        const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
+        const real ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x;
+        const real ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y;
+        const real ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z;
+        const real ups_M_ta_t_7 = ups_Q_yz*ups_q_x;
         const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x;
-        const real ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y;
-        const real ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x;
+        const real ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y;
+        const real ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z;
+        const real ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x;
         const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y;
-        const real ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z;
-        const real ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* total_ups_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* total_ups_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* total_ups_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* total_ups_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* total_ups_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* total_ups_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* total_ups_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* total_ups_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* total_ups_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* total_ups_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* total_ups_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* total_ups_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* total_ups_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* total_ups_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* total_ups_zz_3 */
+        const real ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z;
+        const real ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y - ups_M_ta_t_8*ups_q_z;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
+        const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_xx : ups_Q_xx;  /* M_tt_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_xy : ups_Q_xy;  /* M_tt_ups_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_xz : ups_Q_xz;  /* M_tt_ups_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_yy : ups_Q_yy;  /* M_tt_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_yz : ups_Q_yz;  /* M_tt_ups_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_zz : ups_Q_zz;  /* M_tt_ups_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* M_ta_ups_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* M_ta_ups_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* M_ta_ups_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* M_ta_ups_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* M_ta_ups_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* M_ta_ups_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* M_ta_ups_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* M_ta_ups_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* M_ta_ups_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* M_aa_ups_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* M_aa_ups_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* M_aa_ups_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* M_aa_ups_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* M_aa_ups_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* M_aa_ups_zz */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
@@ -3803,27 +3933,27 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -3841,48 +3971,27 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -3905,82 +4014,95 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r3_y = -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
-            - tube_end_p1_r0_x*tube_s_1);
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_in_axes2_z = tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx
+            + tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
+            tube_c_1*tube_n_m1_t_11);
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_y = -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
-            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz);
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
+            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz);
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r3_x = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
-            - tube_end_p3_r0_x*tube_s_1);
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_in_axes2_z = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx
+            + tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
+            tube_c_1*tube_n_m3_t_2);
+        const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_3;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        const real tube_n_c1_t = tube_s_1*tube_s_2;
+        const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
+        const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
+            tube_base_frame_xy*tube_n_c1_t_2;
+        const real tube_n_c1_y = tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
+            tube_base_frame_yy*tube_n_c1_t_2;
+        const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
+            tube_base_frame_zy*tube_n_c1_t_2;
+        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
+        const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
+        const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        /* (tube-mu2_c3) moment along direction 2 that goes with it */
+        const real tube_mu2_c3 = 1/tube_size_c3;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*inv_tube_size_c3*tube_f_c3_t;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
+        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3_t*tube_mu2_c3;
+        const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
+        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3*tube_mu2_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -4000,10 +4122,10 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -4021,31 +4143,31 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -4057,488 +4179,509 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_157 = 1/tube_w_1_t_75;
-        const real tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70;
-        const real tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71;
-        const real tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72;
-        const real tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73;
-        const real tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74;
-        const real tube_w_1_t_81 = inv_tube_w_1_t_157*tube_w_1_t_76;
-        const real tube_w_1_t_82 = inv_tube_w_1_t_157*tube_w_1_t_77;
-        const real tube_w_1_t_83 = R(1.35)*inv_tube_w_1_t_157*tube_w_1_t_78;
-        const real tube_w_1_t_84 = R(1.35)*inv_tube_w_1_t_157*tube_w_1_t_79;
-        const real tube_w_1_t_85 = R(1.35)*inv_tube_w_1_t_157*tube_w_1_t_80;
+        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+        const real tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70;
+        const real tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71;
+        const real tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76;
+        const real tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77;
+        const real tube_w_1_t_78 = -tube_c_2*tube_w_1_in_axes2_y;
+        /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
+        const real tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72;
+        const real tube_m1_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m1_w_1_t;
+        /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
+        const real tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73;
+        const real tube_m2_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m2_w_1_t;
+        /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
+        const real tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74;
+        const real tube_m3_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m3_w_1_t;
         /* (tube-w_2) force part of reciprocal wrench 2 */
-        const real tube_w_2_t = inv_tube_w_1_t_16*inv_tube_w_1_t_57*tube_w_1_t_17;
-        const real tube_w_2_t_2 = inv_tube_w_1_t_95*(inv_tube_w_1_t_16*tube_w_1_t_21 -
+        const real tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17;
+        const real tube_w_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 -
             tube_w_1_t_37*tube_w_2_t);
-        const real tube_w_2_t_3 = inv_tube_w_1_t_129*(tube_w_1_t_41*tube_w_2_t +
-            tube_w_1_t_53*tube_w_2_t_2 - inv_tube_w_1_t_16*tube_w_1_t_25);
-        const real tube_w_2_t_4 = inv_tube_w_1_t_157*(inv_tube_w_1_t_16*tube_w_1_t_29 +
+        const real tube_w_2_t_3 = inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t +
+            tube_w_1_t_53*tube_w_2_t_2 - inv_tube_w_1_t_13*tube_w_1_t_25);
+        const real tube_w_2_t_4 = inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 +
             tube_w_1_t_69*tube_w_2_t_3 - tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2);
-        const real tube_w_2_t_5 = inv_tube_w_1_t_16*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t +
-            tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4;
-        const real tube_w_2_t_6 = inv_tube_w_1_t_95*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 -
-            tube_w_1_t_77*tube_w_2_t_4;
-        const real tube_w_2_t_7 = inv_tube_w_1_t_16*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t +
-            tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_w_1_t_78*tube_w_2_t_4;
-        const real tube_w_2_t_8 = R(1.35)*tube_w_2_t_7;
-        const real tube_w_2_t_9 = tube_w_1_t_67*tube_w_2_t_3 + tube_w_1_t_79*tube_w_2_t_4;
-        const real tube_w_2_t_10 = R(1.35)*tube_w_2_t_9;
-        const real tube_w_2_t_11 = inv_tube_w_1_t_16*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
-            tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_w_1_t_80*tube_w_2_t_4;
-        const real tube_w_2_t_12 = R(1.35)*tube_w_2_t_11;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t_86 = tube_s_2*tube_w_1_t_81;
-        const real tube_w_1_t_87 = tube_c_2*tube_w_1_t_81;
-        /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_d_alpha_1_xz = tube_s_2*tube_w_1_t_82;
-        const real tube_d_alpha_1_yz = tube_c_2*tube_w_1_t_82;
-        /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-           3, less gravity */
-        const real tube_d_acc_3_t = tube_root_2*tube_w_2_t_5;
-        const real tube_d_acc_3_t_2 = tube_root_2*tube_w_2_t_6;
-        const real tube_d_acc_3_t_3 = tube_root_2*tube_w_1_t_87;
-        const real tube_d_acc_3_t_4 = tube_d_alpha_1_yz*tube_root_2;
-        /* (tube-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real tube_h_3_y = m->tube_h_3_y[i];
-        const real tube_h_3_z = m->tube_h_3_z[i];
-        const real tube_d_phi_3_t = tube_h_3_y*tube_w_1_t_87 - tube_h_3_z*tube_w_2_t_5;
-        const real tube_d_phi_3_t_2 = tube_d_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_w_2_t_6;
-        /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real tube_J_group_2_xz = m->tube_J_group_2_xz[i];
-        const real tube_J_group_2_yz = m->tube_J_group_2_yz[i];
-        const real tube_J_group_2_zz = m->tube_J_group_2_zz[i];
-        const real tube_h_3_x = m->tube_h_3_x[i];
-        const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_d_N_2_zy = tube_J_group_2_xz*tube_w_1_t_86 +
-            tube_J_group_2_zz*tube_w_2_t_5 + tube_d_acc_3_t*tube_h_3_x +
-            tube_root_2*(tube_d_acc_3_t*tube_link3_mass + tube_h_3_x*tube_w_2_t_5 -
-            tube_h_3_y*tube_w_1_t_86) - tube_J_group_2_yz*tube_w_1_t_87;
-        const real tube_d_N_2_zz = tube_J_group_2_xz*tube_d_alpha_1_xz +
-            tube_J_group_2_zz*tube_w_2_t_6 + tube_d_acc_3_t_2*tube_h_3_x +
-            tube_root_2*(tube_d_acc_3_t_2*tube_link3_mass + tube_h_3_x*tube_w_2_t_6 -
-            tube_d_alpha_1_xz*tube_h_3_y) - tube_J_group_2_yz*tube_d_alpha_1_yz;
-        /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real tube_d_Gamma_1_t = tube_c_2*tube_h_3_y;
-        const real tube_J_group_2_xy = m->tube_J_group_2_xy[i];
-        const real tube_J_group_2_yy = m->tube_J_group_2_yy[i];
-        const real tube_d_Gamma_1_t_2 = tube_c_2*(tube_J_group_2_xy*tube_w_1_t_86 +
-            tube_J_group_2_yz*tube_w_2_t_5 - tube_J_group_2_yy*tube_w_1_t_87 -
-            tube_d_acc_3_t_3*tube_h_3_x - tube_root_2*(tube_d_acc_3_t_3*tube_link3_mass +
-            tube_h_3_x*tube_w_1_t_87 - tube_h_3_z*tube_w_1_t_86));
-        const real tube_J_group_2_xx = m->tube_J_group_2_xx[i];
-        const real tube_d_Gamma_1_y = tube_s_2*(tube_J_group_2_xx*tube_w_1_t_86 +
-            tube_J_group_2_xz*tube_w_2_t_5 - tube_J_group_2_xy*tube_w_1_t_87 -
-            tube_d_acc_3_t*tube_h_3_y - tube_d_acc_3_t_3*tube_h_3_z) - tube_d_Gamma_1_t_2;
-        const real tube_d_Gamma_1_t_3 = tube_c_2*(tube_J_group_2_xy*tube_d_alpha_1_xz +
-            tube_J_group_2_yz*tube_w_2_t_6 - tube_J_group_2_yy*tube_d_alpha_1_yz -
-            tube_d_acc_3_t_4*tube_h_3_x - tube_root_2*(tube_d_acc_3_t_4*tube_link3_mass +
-            tube_d_alpha_1_yz*tube_h_3_x - tube_d_alpha_1_xz*tube_h_3_z));
-        const real tube_d_Gamma_1_z = tube_s_2*(tube_J_group_2_xx*tube_d_alpha_1_xz +
-            tube_J_group_2_xz*tube_w_2_t_6 - tube_J_group_2_xy*tube_d_alpha_1_yz -
-            tube_d_acc_3_t_2*tube_h_3_y - tube_d_acc_3_t_4*tube_h_3_z) - tube_d_Gamma_1_t_3;
-        /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real tube_d_G_yz = tube_d_Gamma_1_z*tube_w_1_t_81 + tube_d_N_2_zz*tube_w_2_t_5;
-        /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real tube_Q_t = tube_d_Gamma_1_y*tube_w_1_t_81 + tube_d_N_2_zy*tube_w_2_t_5 -
-            tube_link3_mass;
-        const real tube_Q_t_2 = R(0.5)*tube_Q_t;
-        const real tube_Q_t_3 = tube_d_Gamma_1_z*tube_w_1_t_82 + tube_d_N_2_zz*tube_w_2_t_6 -
-            tube_link3_mass;
-        const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-        const real tube_Q_t_5 = axis_y_tube_axes2_in_base_x*tube_Q_t_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_G_yz - axis_x_tube_axes2_x*tube_d_phi_3_t;
-        const real tube_Q_t_6 = axis_y_tube_axes2_in_base_y*tube_Q_t_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_G_yz - axis_x_tube_axes2_y*tube_d_phi_3_t;
-        const real tube_Q_t_7 = axis_y_tube_axes2_in_base_z*tube_Q_t_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_G_yz - axis_x_tube_axes2_z*tube_d_phi_3_t;
-        const real tube_Q_t_8 = axis_z_tube_axes2_in_base_x*tube_Q_t_4 -
-            axis_x_tube_axes2_x*tube_d_phi_3_t_2;
-        const real tube_Q_t_9 = axis_z_tube_axes2_in_base_y*tube_Q_t_4 -
-            axis_x_tube_axes2_y*tube_d_phi_3_t_2;
-        const real tube_Q_t_10 = axis_z_tube_axes2_in_base_z*tube_Q_t_4 -
-            axis_x_tube_axes2_z*tube_d_phi_3_t_2;
-        const real tube_Q_t_11 = axis_y_tube_axes2_in_base_x*tube_Q_t_5 +
-            axis_z_tube_axes2_in_base_x*tube_Q_t_8;
-        const real tube_Q_t_12 = 2*tube_Q_t_11 + tube_link3_mass;
-        const real tube_Q_t_13 = axis_y_tube_axes2_in_base_x*tube_Q_t_6 +
-            axis_y_tube_axes2_in_base_y*tube_Q_t_5 + axis_z_tube_axes2_in_base_x*tube_Q_t_9 +
-            axis_z_tube_axes2_in_base_y*tube_Q_t_8;
-        const real tube_Q_t_14 = axis_y_tube_axes2_in_base_x*tube_Q_t_7 +
-            axis_y_tube_axes2_in_base_z*tube_Q_t_5 + axis_z_tube_axes2_in_base_x*tube_Q_t_10 +
-            axis_z_tube_axes2_in_base_z*tube_Q_t_8;
-        const real tube_Q_t_15 = axis_y_tube_axes2_in_base_y*tube_Q_t_6 +
-            axis_z_tube_axes2_in_base_y*tube_Q_t_9;
-        const real tube_Q_t_16 = 2*tube_Q_t_15 + tube_link3_mass;
-        const real tube_Q_t_17 = axis_y_tube_axes2_in_base_y*tube_Q_t_7 +
-            axis_y_tube_axes2_in_base_z*tube_Q_t_6 + axis_z_tube_axes2_in_base_y*tube_Q_t_10 +
-            axis_z_tube_axes2_in_base_z*tube_Q_t_9;
-        const real tube_Q_t_18 = axis_y_tube_axes2_in_base_z*tube_Q_t_7 +
-            axis_z_tube_axes2_in_base_z*tube_Q_t_10;
-        const real tube_Q_t_19 = 2*tube_Q_t_18 + tube_link3_mass;
-        /* (tube-o_2) moment part of reciprocal wrench 2 */
-        const real tube_o_2_x = tube_end_p2_r3_y*tube_w_2_t_10 - tube_end_p3_r1_x*tube_w_2_t_12;
-        const real tube_o_2_y = -tube_end_p1_r1_x*tube_w_2_t_8 - tube_end_p2_r3_x*tube_w_2_t_10;
-        const real tube_o_2_z = tube_end_p1_r3_y*tube_w_2_t_8 + tube_end_p3_r3_x*tube_w_2_t_12;
+        const real tube_w_2_in_axes2_y = inv_tube_w_1_t_13*tube_w_1_t_14 +
+            tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 -
+            tube_w_1_t_76*tube_w_2_t_4;
+        const real tube_w_2_in_axes2_z = inv_tube_w_1_t_49*tube_w_2_t_2 +
+            tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
+        /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
+        const real tube_m1_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t +
+            tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
+        const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
+        /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
+        const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3;
+        const real tube_m2_w_2 = -R(1.35)*tube_m2_w_2_t;
+        /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
+        const real tube_m3_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
+            tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
+        const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
         /* (tube-o_1) moment part of reciprocal wrench 1 */
-        const real tube_o_1_x = -tube_end_p2_r3_y*tube_w_1_t_84 - tube_end_p3_r1_x*tube_w_1_t_85;
-        const real tube_o_1_y = tube_end_p2_r3_x*tube_w_1_t_84 - tube_end_p1_r1_x*tube_w_1_t_83;
-        const real tube_o_1_z = tube_end_p1_r3_y*tube_w_1_t_83 + tube_end_p3_r3_x*tube_w_1_t_85;
-        const real tube_o_1_t = tube_c_2*tube_o_1_x;
-        const real tube_o_1_t_2 = tube_o_1_y*tube_s_2;
-        const real tube_o_1_t_3 = tube_c_2*tube_o_1_y;
-        const real tube_o_1_t_4 = tube_o_1_x*tube_s_2;
+        const real tube_o_1_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_1 -
+            tube_end_p3_in_axes2_z*tube_m3_w_1;
+        const real tube_o_1_in_axes2_y = tube_m2_w_1*tube_n_m2_in_axes2_y -
+            tube_end_p1_in_axes2_z*tube_m1_w_1;
+        const real tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z +
+            tube_m3_w_1*tube_n_m3_in_axes2_z;
+        /* (tube-o_2) moment part of reciprocal wrench 2 */
+        const real tube_o_2_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_2 -
+            tube_end_p3_in_axes2_z*tube_m3_w_2;
+        const real tube_o_2_in_axes2_y = tube_m2_w_2*tube_n_m2_in_axes2_y -
+            tube_end_p1_in_axes2_z*tube_m1_w_2;
+        const real tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z +
+            tube_m3_w_2*tube_n_m3_in_axes2_z;
         /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_dalpha_alpha_1_xz = tube_o_1_z*tube_s_2;
-        const real tube_dalpha_alpha_1_yz = tube_c_2*tube_o_1_z;
+        const real tube_dalpha_alpha_1_t = -tube_c_2*tube_o_1_in_axes2_x;
+        const real tube_dalpha_alpha_1_in_axes2_xy = tube_o_1_in_axes2_y*tube_s_2;
+        const real tube_dalpha_alpha_1_t_2 = -tube_c_2*tube_o_1_in_axes2_y;
+        const real tube_dalpha_alpha_1_in_axes2_xx = tube_o_1_in_axes2_x*tube_s_2;
+        const real tube_dalpha_alpha_1_in_axes2_xz = tube_o_1_in_axes2_z*tube_s_2;
+        const real tube_dalpha_alpha_1_t_3 = -tube_c_2*tube_o_1_in_axes2_z;
+        /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real tube_d_alpha_1_in_axes2_xy = tube_s_2*tube_w_1_in_axes2_y;
+        const real tube_d_alpha_1_in_axes2_xz = tube_s_2*tube_w_1_in_axes2_z;
+        const real tube_d_alpha_1_t = -tube_c_2*tube_w_1_in_axes2_z;
         /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real tube_dalpha_acc_3_t = tube_o_2_x*tube_root_2;
-        const real tube_dalpha_acc_3_t_2 = tube_o_2_y*tube_root_2;
-        const real tube_dalpha_acc_3_t_3 = tube_o_2_z*tube_root_2;
-        const real tube_dalpha_acc_3_t_4 = tube_o_1_t*tube_root_2;
-        const real tube_dalpha_acc_3_t_5 = tube_o_1_t_3*tube_root_2;
-        const real tube_dalpha_acc_3_t_6 = tube_dalpha_alpha_1_yz*tube_root_2;
-        /* (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its
-           turning about its reference point */
-        const real tube_dalpha_phi_3_t = tube_h_3_y*tube_o_1_t - tube_h_3_z*tube_o_2_x;
-        const real tube_dalpha_phi_3_t_2 = tube_h_3_y*tube_o_1_t_3 - tube_h_3_z*tube_o_2_y;
-        const real tube_dalpha_phi_3_t_3 = tube_dalpha_alpha_1_yz*tube_h_3_y -
-            tube_h_3_z*tube_o_2_z;
+        const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_root_2;
+        /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
+           3, less gravity */
+        const real tube_d_acc_3_in_axes2_yy = tube_root_2*tube_w_2_in_axes2_y;
+        const real tube_d_acc_3_in_axes2_yz = tube_root_2*tube_w_2_in_axes2_z;
+        const real tube_d_acc_3_in_axes2_zy = tube_root_2*tube_w_1_t_78;
+        const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_root_2;
         /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real tube_dalpha_N_2_zx = tube_J_group_2_xz*tube_o_1_t_4 +
-            tube_J_group_2_zz*tube_o_2_x + tube_dalpha_acc_3_t*tube_h_3_x +
-            tube_root_2*(tube_dalpha_acc_3_t*tube_link3_mass + tube_h_3_x*tube_o_2_x -
-            tube_h_3_y*tube_o_1_t_4) - tube_J_group_2_yz*tube_o_1_t;
-        const real tube_dalpha_N_2_zy = tube_J_group_2_xz*tube_o_1_t_2 +
-            tube_J_group_2_zz*tube_o_2_y + tube_dalpha_acc_3_t_2*tube_h_3_x +
-            tube_root_2*(tube_dalpha_acc_3_t_2*tube_link3_mass + tube_h_3_x*tube_o_2_y -
-            tube_h_3_y*tube_o_1_t_2) - tube_J_group_2_yz*tube_o_1_t_3;
-        const real tube_dalpha_N_2_zz = tube_J_group_2_xz*tube_dalpha_alpha_1_xz +
-            tube_J_group_2_zz*tube_o_2_z + tube_dalpha_acc_3_t_3*tube_h_3_x +
-            tube_root_2*(tube_dalpha_acc_3_t_3*tube_link3_mass + tube_h_3_x*tube_o_2_z -
-            tube_dalpha_alpha_1_xz*tube_h_3_y) - tube_J_group_2_yz*tube_dalpha_alpha_1_yz;
+        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
+        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
+        const real tube_J_group_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i];
+        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
+        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
+        const real tube_link3_mass = m->tube_link3_mass[i];
+        const real tube_dalpha_N_2_in_axes2_zx =
+            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
+            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
+            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t;
+        const real tube_dalpha_N_2_in_axes2_zy =
+            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
+            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
+            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2;
+        const real tube_dalpha_N_2_in_axes2_zz =
+            tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
+            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
+            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3;
+        /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
+           outwards, the force at the connection point left out */
+        const real tube_d_N_2_in_axes2_zy = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xy
+            + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
+            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y -
+            tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_w_1_t_78;
+        const real tube_d_N_2_in_axes2_zz = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz
+            + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
+            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
+            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t;
         /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
            links' inertia and weight */
-        const real tube_dalpha_Gamma_1_t = tube_c_2*(tube_J_group_2_xy*tube_o_1_t_4 +
-            tube_J_group_2_yz*tube_o_2_x - tube_J_group_2_yy*tube_o_1_t -
-            tube_dalpha_acc_3_t_4*tube_h_3_x - tube_root_2*(tube_dalpha_acc_3_t_4*tube_link3_mass
-            + tube_h_3_x*tube_o_1_t - tube_h_3_z*tube_o_1_t_4));
-        const real tube_dalpha_Gamma_1_x = tube_s_2*(tube_J_group_2_xx*tube_o_1_t_4 +
-            tube_J_group_2_xz*tube_o_2_x - tube_J_group_2_xy*tube_o_1_t -
-            tube_dalpha_acc_3_t*tube_h_3_y - tube_dalpha_acc_3_t_4*tube_h_3_z) -
-            tube_dalpha_Gamma_1_t;
-        const real tube_dalpha_Gamma_1_t_2 = tube_c_2*(tube_J_group_2_xy*tube_o_1_t_2 +
-            tube_J_group_2_yz*tube_o_2_y - tube_J_group_2_yy*tube_o_1_t_3 -
-            tube_dalpha_acc_3_t_5*tube_h_3_x - tube_root_2*(tube_dalpha_acc_3_t_5*tube_link3_mass
-            + tube_h_3_x*tube_o_1_t_3 - tube_h_3_z*tube_o_1_t_2));
-        const real tube_dalpha_Gamma_1_y = tube_s_2*(tube_J_group_2_xx*tube_o_1_t_2 +
-            tube_J_group_2_xz*tube_o_2_y - tube_J_group_2_xy*tube_o_1_t_3 -
-            tube_dalpha_acc_3_t_2*tube_h_3_y - tube_dalpha_acc_3_t_5*tube_h_3_z) -
-            tube_dalpha_Gamma_1_t_2;
-        const real tube_dalpha_Gamma_1_t_3 = tube_c_2*(tube_J_group_2_xy*tube_dalpha_alpha_1_xz +
-            tube_J_group_2_yz*tube_o_2_z - tube_J_group_2_yy*tube_dalpha_alpha_1_yz -
-            tube_dalpha_acc_3_t_6*tube_h_3_x - tube_root_2*(tube_dalpha_acc_3_t_6*tube_link3_mass
-            + tube_dalpha_alpha_1_yz*tube_h_3_x - tube_dalpha_alpha_1_xz*tube_h_3_z));
-        const real tube_dalpha_Gamma_1_z = tube_s_2*(tube_J_group_2_xx*tube_dalpha_alpha_1_xz +
-            tube_J_group_2_xz*tube_o_2_z - tube_J_group_2_xy*tube_dalpha_alpha_1_yz -
-            tube_dalpha_acc_3_t_3*tube_h_3_y - tube_dalpha_acc_3_t_6*tube_h_3_z) -
-            tube_dalpha_Gamma_1_t_3;
+        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
+        const real tube_J_group_2_in_axes2_yy = m->tube_J_group_2_in_axes2_yy[i];
+        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
+        const real tube_dalpha_Gamma_1_t =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
+            tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z));
+        const real tube_J_group_2_in_axes2_xx = m->tube_J_group_2_in_axes2_xx[i];
+        const real tube_dalpha_Gamma_1_in_axes2_x = tube_dalpha_Gamma_1_t +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
+            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z);
+        const real tube_dalpha_Gamma_1_t_2 =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
+        const real tube_dalpha_Gamma_1_in_axes2_y = tube_dalpha_Gamma_1_t_2 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
+            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z);
+        const real tube_dalpha_Gamma_1_t_3 =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
+        const real tube_dalpha_Gamma_1_in_axes2_z = tube_dalpha_Gamma_1_t_3 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
+            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
+        /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real tube_d_Gamma_1_in_axes2_x = tube_c_2*tube_h_3_in_spec2_y;
+        const real tube_d_Gamma_1_t =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
+            tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
+        const real tube_d_Gamma_1_in_axes2_y = tube_d_Gamma_1_t +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
+            tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
+            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z);
+        const real tube_d_Gamma_1_t_2 =
+            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
+            tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_d_alpha_1_t*tube_h_3_in_spec2_x -
+            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
+        const real tube_d_Gamma_1_in_axes2_z = tube_d_Gamma_1_t_2 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
+            tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
+            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
         /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_yx = tube_dalpha_Gamma_1_x*tube_w_1_t_81 +
-            tube_dalpha_N_2_zx*tube_w_2_t_5;
-        const real tube_dalpha_G_yy = tube_dalpha_Gamma_1_y*tube_w_1_t_81 +
-            tube_dalpha_N_2_zy*tube_w_2_t_5;
-        const real tube_dalpha_G_yz = tube_dalpha_Gamma_1_z*tube_w_1_t_81 +
-            tube_dalpha_N_2_zz*tube_w_2_t_5;
-        const real tube_dalpha_G_zx = tube_dalpha_Gamma_1_x*tube_w_1_t_82 +
-            tube_dalpha_N_2_zx*tube_w_2_t_6;
-        const real tube_dalpha_G_zy = tube_dalpha_Gamma_1_y*tube_w_1_t_82 +
-            tube_dalpha_N_2_zy*tube_w_2_t_6;
-        const real tube_dalpha_G_zz = tube_dalpha_Gamma_1_z*tube_w_1_t_82 +
-            tube_dalpha_N_2_zz*tube_w_2_t_6;
-        /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real tube_dalpha_c_in_base_x = axis_x_tube_axes2_x*tube_dalpha_phi_3_t -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zx;
-        const real tube_dalpha_c_in_base_y = axis_x_tube_axes2_y*tube_dalpha_phi_3_t -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zx;
-        const real tube_dalpha_c_in_base_z = axis_x_tube_axes2_z*tube_dalpha_phi_3_t -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zx;
-        const real tube_dalpha_c_in_base_x_2 = axis_x_tube_axes2_x*tube_dalpha_phi_3_t_2 -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zy;
-        const real tube_dalpha_c_in_base_y_2 = axis_x_tube_axes2_y*tube_dalpha_phi_3_t_2 -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zy;
-        const real tube_dalpha_c_in_base_z_2 = axis_x_tube_axes2_z*tube_dalpha_phi_3_t_2 -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zy;
-        const real tube_dalpha_c_in_base_x_3 = axis_x_tube_axes2_x*tube_dalpha_phi_3_t_3 -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zz;
-        const real tube_dalpha_c_in_base_y_3 = axis_x_tube_axes2_y*tube_dalpha_phi_3_t_3 -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zz;
-        const real tube_dalpha_c_in_base_z_3 = axis_x_tube_axes2_z*tube_dalpha_phi_3_t_3 -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zz;
-        /* (M_ta) coupling block of M */
-        const real tube_M_ta_t = tube_Q_t_13*tube_q_in_base_z;
-        const real tube_M_ta_t_2 = tube_Q_t_14*tube_q_in_base_y;
-        const real tube_M_ta_t_3 = tube_Q_t_17*tube_q_in_base_x;
-        const real tube_M_ta_t_4 = tube_M_ta_t + axis_x_tube_axes2_x*tube_dalpha_c_in_base_x +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_3 - tube_M_ta_t_2;
-        const real tube_M_ta_t_5 = tube_Q_t_12*tube_q_in_base_z -
-            axis_x_tube_axes2_y*tube_dalpha_c_in_base_x -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_3 - tube_Q_t_14*tube_q_in_base_x;
-        const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_3 + tube_Q_t_12*tube_q_in_base_y -
-            tube_Q_t_13*tube_q_in_base_x;
-        const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_base_y +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_3 + tube_Q_t_16*tube_q_in_base_z -
-            tube_Q_t_17*tube_q_in_base_y;
-        const real tube_M_ta_t_8 = tube_M_ta_t - tube_M_ta_t_3 -
-            axis_x_tube_axes2_y*tube_dalpha_c_in_base_y -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_3;
-        const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_3 + tube_Q_t_13*tube_q_in_base_y -
-            tube_Q_t_16*tube_q_in_base_x;
-        const real tube_M_ta_t_10 = axis_x_tube_axes2_x*tube_dalpha_c_in_base_z +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_3 + tube_Q_t_17*tube_q_in_base_z -
-            tube_Q_t_19*tube_q_in_base_y;
-        const real tube_M_ta_t_11 = tube_Q_t_14*tube_q_in_base_z -
-            axis_x_tube_axes2_y*tube_dalpha_c_in_base_z -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_3 - tube_Q_t_19*tube_q_in_base_x;
-        const real tube_M_ta_t_12 = tube_M_ta_t_3 - tube_M_ta_t_2 -
-            axis_x_tube_axes2_z*tube_dalpha_c_in_base_z -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_2 -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_3;
+        const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
+            + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y;
+        const real tube_dalpha_G_in_axes2_yy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y
+            + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y;
+        const real tube_dalpha_G_in_axes2_yz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y
+            + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
+        const real tube_dalpha_G_in_axes2_zx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z
+            + tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z;
+        const real tube_dalpha_G_in_axes2_zy = tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z
+            + tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z;
+        const real tube_dalpha_G_in_axes2_zz = tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z
+            + tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z;
+        /* (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real tube_d_G_in_axes2_yz = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
+            tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
         /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_m1_x = tube_dalpha_Gamma_1_x*tube_w_1_t_83 +
-            tube_dalpha_N_2_zx*tube_w_2_t_8;
-        const real tube_dalpha_G_m1_y = tube_dalpha_Gamma_1_y*tube_w_1_t_83 +
-            tube_dalpha_N_2_zy*tube_w_2_t_8;
-        const real tube_dalpha_G_m1_z = tube_dalpha_Gamma_1_z*tube_w_1_t_83 +
-            tube_dalpha_N_2_zz*tube_w_2_t_8;
-        /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
-           balances the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_m2_x = tube_dalpha_Gamma_1_x*tube_w_1_t_84 -
-            tube_dalpha_N_2_zx*tube_w_2_t_10;
-        const real tube_dalpha_G_m2_y = tube_dalpha_Gamma_1_y*tube_w_1_t_84 -
-            tube_dalpha_N_2_zy*tube_w_2_t_10;
-        const real tube_dalpha_G_m2_z = tube_dalpha_Gamma_1_z*tube_w_1_t_84 -
-            tube_dalpha_N_2_zz*tube_w_2_t_10;
-        /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
-           balances the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_m3_x = tube_dalpha_Gamma_1_x*tube_w_1_t_85 +
-            tube_dalpha_N_2_zx*tube_w_2_t_12;
-        const real tube_dalpha_G_m3_y = tube_dalpha_Gamma_1_y*tube_w_1_t_85 +
-            tube_dalpha_N_2_zy*tube_w_2_t_12;
-        const real tube_dalpha_G_m3_z = tube_dalpha_Gamma_1_z*tube_w_1_t_85 +
-            tube_dalpha_N_2_zz*tube_w_2_t_12;
-        /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
-           balances the leg's inertia and weight along all freedoms */
-        const real tube_dalpha_G_m_xx = -tube_dalpha_G_m2_x*tube_end_p2_r3_y -
-            tube_dalpha_G_m3_x*tube_end_p3_r1_x;
-        const real tube_dalpha_G_m_xy = -tube_dalpha_G_m2_y*tube_end_p2_r3_y -
-            tube_dalpha_G_m3_y*tube_end_p3_r1_x;
-        const real tube_dalpha_G_m_xz = -tube_dalpha_G_m2_z*tube_end_p2_r3_y -
-            tube_dalpha_G_m3_z*tube_end_p3_r1_x;
-        const real tube_dalpha_G_m_yx = tube_dalpha_G_m2_x*tube_end_p2_r3_x -
-            tube_dalpha_G_m1_x*tube_end_p1_r1_x;
-        const real tube_dalpha_G_m_yy = tube_dalpha_G_m2_y*tube_end_p2_r3_x -
-            tube_dalpha_G_m1_y*tube_end_p1_r1_x;
-        const real tube_dalpha_G_m_yz = tube_dalpha_G_m2_z*tube_end_p2_r3_x -
-            tube_dalpha_G_m1_z*tube_end_p1_r1_x;
-        const real tube_dalpha_G_m_zx = tube_dalpha_G_m1_x*tube_end_p1_r3_y +
-            tube_dalpha_G_m3_x*tube_end_p3_r3_x;
-        const real tube_dalpha_G_m_zy = tube_dalpha_G_m1_y*tube_end_p1_r3_y +
-            tube_dalpha_G_m3_y*tube_end_p3_r3_x;
-        const real tube_dalpha_G_m_zz = tube_dalpha_G_m1_z*tube_end_p1_r3_y +
-            tube_dalpha_G_m3_z*tube_end_p3_r3_x;
+        const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
+            tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2;
+        const real tube_dalpha_G_m1_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 +
+            tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2;
+        const real tube_dalpha_G_m1_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 +
+            tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
         /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
            the leg's inertia and weight along all freedoms */
-        const real tube_d_G_m1_x = tube_h_3_z*tube_w_2_t_8 - tube_d_Gamma_1_t*tube_w_1_t_83;
-        const real tube_d_G_m1_y = tube_d_Gamma_1_y*tube_w_1_t_83 + tube_d_N_2_zy*tube_w_2_t_8;
-        const real tube_d_G_m1_z = tube_d_Gamma_1_z*tube_w_1_t_83 + tube_d_N_2_zz*tube_w_2_t_8;
+        const real tube_d_G_m1_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 +
+            tube_h_3_in_spec2_z*tube_m1_w_2;
+        const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
+            tube_d_N_2_in_axes2_zy*tube_m1_w_2;
+        const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
+            tube_d_N_2_in_axes2_zz*tube_m1_w_2;
+        /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_dalpha_G_m2_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 +
+            tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2;
+        const real tube_dalpha_G_m2_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 +
+            tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2;
+        const real tube_dalpha_G_m2_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 +
+            tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
         /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
            the leg's inertia and weight along all freedoms */
-        const real tube_d_G_m2_x = -tube_d_Gamma_1_t*tube_w_1_t_84 - tube_h_3_z*tube_w_2_t_10;
-        const real tube_d_G_m2_y = tube_d_Gamma_1_y*tube_w_1_t_84 - tube_d_N_2_zy*tube_w_2_t_10;
-        const real tube_d_G_m2_z = tube_d_Gamma_1_z*tube_w_1_t_84 - tube_d_N_2_zz*tube_w_2_t_10;
+        const real tube_d_G_m2_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 +
+            tube_h_3_in_spec2_z*tube_m2_w_2;
+        const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
+            tube_d_N_2_in_axes2_zy*tube_m2_w_2;
+        const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
+            tube_d_N_2_in_axes2_zz*tube_m2_w_2;
+        /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
+            tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2;
+        const real tube_dalpha_G_m3_in_axes2_y = tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 +
+            tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2;
+        const real tube_dalpha_G_m3_in_axes2_z = tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 +
+            tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
         /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
            the leg's inertia and weight along all freedoms */
-        const real tube_d_G_m3_x = tube_h_3_z*tube_w_2_t_12 - tube_d_Gamma_1_t*tube_w_1_t_85;
-        const real tube_d_G_m3_y = tube_d_Gamma_1_y*tube_w_1_t_85 + tube_d_N_2_zy*tube_w_2_t_12;
-        const real tube_d_G_m3_z = tube_d_Gamma_1_z*tube_w_1_t_85 + tube_d_N_2_zz*tube_w_2_t_12;
+        const real tube_d_G_m3_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 +
+            tube_h_3_in_spec2_z*tube_m3_w_2;
+        const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
+            tube_d_N_2_in_axes2_zy*tube_m3_w_2;
+        const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
+            tube_d_N_2_in_axes2_zz*tube_m3_w_2;
+        /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_dalpha_G_m_in_axes2_xx =
+            -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_xy =
+            -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_y*tube_end_p3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_xz =
+            -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_z*tube_end_p3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yx = tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y
+            - tube_dalpha_G_m1_in_axes2_x*tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yy = tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y
+            - tube_dalpha_G_m1_in_axes2_y*tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yz = tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y
+            - tube_dalpha_G_m1_in_axes2_z*tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zx = tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z
+            + tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zy = tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z
+            + tube_dalpha_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zz = tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z
+            + tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
         /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real tube_d_G_m_xx = -tube_d_G_m2_x*tube_end_p2_r3_y -
-            tube_d_G_m3_x*tube_end_p3_r1_x;
-        const real tube_d_G_m_xy = -tube_d_G_m2_y*tube_end_p2_r3_y -
-            tube_d_G_m3_y*tube_end_p3_r1_x;
-        const real tube_d_G_m_xz = -tube_d_G_m2_z*tube_end_p2_r3_y -
-            tube_d_G_m3_z*tube_end_p3_r1_x;
-        const real tube_d_G_m_yx = tube_d_G_m2_x*tube_end_p2_r3_x -
-            tube_d_G_m1_x*tube_end_p1_r1_x;
-        const real tube_d_G_m_yy = tube_d_G_m2_y*tube_end_p2_r3_x -
-            tube_d_G_m1_y*tube_end_p1_r1_x;
-        const real tube_d_G_m_yz = tube_d_G_m2_z*tube_end_p2_r3_x -
-            tube_d_G_m1_z*tube_end_p1_r1_x;
-        const real tube_d_G_m_zx = tube_d_G_m1_x*tube_end_p1_r3_y +
-            tube_d_G_m3_x*tube_end_p3_r3_x;
-        const real tube_d_G_m_zy = tube_d_G_m1_y*tube_end_p1_r3_y +
-            tube_d_G_m3_y*tube_end_p3_r3_x;
-        const real tube_d_G_m_zz = tube_d_G_m1_z*tube_end_p1_r3_y +
-            tube_d_G_m3_z*tube_end_p3_r3_x;
+        const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_y*tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_z*tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_x*tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_y*tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_z*tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
+        /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y -
+            tube_h_3_in_spec2_z*tube_o_2_in_axes2_x;
+        const real tube_dalpha_c_in_axes2_xy = tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y -
+            tube_h_3_in_spec2_z*tube_o_2_in_axes2_y;
+        const real tube_dalpha_c_in_axes2_xz = tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y -
+            tube_h_3_in_spec2_z*tube_o_2_in_axes2_z;
+        /* (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real tube_d_c_in_axes2_xy = tube_h_3_in_spec2_y*tube_w_1_t_78 -
+            tube_h_3_in_spec2_z*tube_w_2_in_axes2_y;
+        const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*tube_h_3_in_spec2_y -
+            tube_h_3_in_spec2_z*tube_w_2_in_axes2_z;
+        /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y;
+        const real axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z;
+        const real axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x;
+        const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
+            tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - tube_link3_mass;
+        const real tube_Q_t_2 = R(0.5)*tube_Q_t;
+        const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
+            tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - tube_link3_mass;
+        const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
+        const real tube_Q_t_5 = tube_Q_t_2*tube_n_c1_x + tube_d_G_in_axes2_yz*tube_n_c2_x -
+            axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_6 = tube_Q_t_2*tube_n_c1_y + tube_d_G_in_axes2_yz*tube_n_c2_y -
+            axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_7 = tube_Q_t_2*tube_n_c1_z + tube_d_G_in_axes2_yz*tube_n_c2_z -
+            axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_8 = tube_Q_t_4*tube_n_c2_x - axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_9 = tube_Q_t_4*tube_n_c2_y - axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_10 = tube_Q_t_4*tube_n_c2_z -
+            axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_11 = tube_Q_t_5*tube_n_c1_x + tube_Q_t_8*tube_n_c2_x;
+        const real tube_Q_xx = 2*tube_Q_t_11 + tube_link3_mass;
+        const real tube_Q_xy = tube_Q_t_5*tube_n_c1_y + tube_Q_t_6*tube_n_c1_x +
+            tube_Q_t_8*tube_n_c2_y + tube_Q_t_9*tube_n_c2_x;
+        const real tube_Q_xz = tube_Q_t_10*tube_n_c2_x + tube_Q_t_5*tube_n_c1_z +
+            tube_Q_t_7*tube_n_c1_x + tube_Q_t_8*tube_n_c2_z;
+        const real tube_Q_t_12 = tube_Q_t_6*tube_n_c1_y + tube_Q_t_9*tube_n_c2_y;
+        const real tube_Q_yy = 2*tube_Q_t_12 + tube_link3_mass;
+        const real tube_Q_yz = tube_Q_t_10*tube_n_c2_y + tube_Q_t_6*tube_n_c1_z +
+            tube_Q_t_7*tube_n_c1_y + tube_Q_t_9*tube_n_c2_z;
+        const real tube_Q_t_13 = tube_Q_t_10*tube_n_c2_z + tube_Q_t_7*tube_n_c1_z;
+        const real tube_Q_zz = 2*tube_Q_t_13 + tube_link3_mass;
         /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
            actuation */
-        const real tube_dalpha_c_m_in_base_x = -axis_x_tube_axes2_x*tube_dalpha_G_m_xx -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zx;
-        const real tube_dalpha_c_m_in_base_y = -axis_x_tube_axes2_y*tube_dalpha_G_m_xx -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zx;
-        const real tube_dalpha_c_m_in_base_x_2 = -axis_x_tube_axes2_x*tube_dalpha_G_m_xy -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zy;
-        const real tube_dalpha_c_m_in_base_y_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_xy -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zy;
-        const real tube_dalpha_c_m_in_base_x_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_xz -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zz;
-        const real tube_dalpha_c_m_in_base_y_3 = -axis_x_tube_axes2_y*tube_dalpha_G_m_xz -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zz;
-        const real tube_dalpha_c_m_in_base_z =
-            axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xx -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zx) +
-            axis_y_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xy -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zy) +
-            axis_z_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xz -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zz);
+        const real tube_dalpha_c_m_zz =
+            axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
+            tube_dalpha_G_m_in_axes2_yx*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_z) +
+            tube_n_c1_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+            tube_dalpha_G_m_in_axes2_yy*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_z) +
+            tube_n_c2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+            tube_dalpha_G_m_in_axes2_yz*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_z);
         /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
            actuation */
-        const real tube_d_c_m_in_base_x = -axis_x_tube_axes2_x*tube_d_G_m_xx -
-            axis_y_tube_axes2_in_base_x*tube_d_G_m_yx - axis_z_tube_axes2_in_base_x*tube_d_G_m_zx;
-        const real tube_d_c_m_in_base_y = -axis_x_tube_axes2_y*tube_d_G_m_xx -
-            axis_y_tube_axes2_in_base_y*tube_d_G_m_yx - axis_z_tube_axes2_in_base_y*tube_d_G_m_zx;
-        const real tube_d_c_m_in_base_z = -axis_x_tube_axes2_z*tube_d_G_m_xx -
-            axis_y_tube_axes2_in_base_z*tube_d_G_m_yx - axis_z_tube_axes2_in_base_z*tube_d_G_m_zx;
-        const real tube_d_c_m_in_base_x_2 = -axis_x_tube_axes2_x*tube_d_G_m_xy -
-            axis_y_tube_axes2_in_base_x*tube_d_G_m_yy - axis_z_tube_axes2_in_base_x*tube_d_G_m_zy;
-        const real tube_d_c_m_in_base_y_2 = -axis_x_tube_axes2_y*tube_d_G_m_xy -
-            axis_y_tube_axes2_in_base_y*tube_d_G_m_yy - axis_z_tube_axes2_in_base_y*tube_d_G_m_zy;
-        const real tube_d_c_m_in_base_z_2 = -axis_x_tube_axes2_z*tube_d_G_m_xy -
-            axis_y_tube_axes2_in_base_z*tube_d_G_m_yy - axis_z_tube_axes2_in_base_z*tube_d_G_m_zy;
-        const real tube_d_c_m_in_base_x_3 = -axis_x_tube_axes2_x*tube_d_G_m_xz -
-            axis_y_tube_axes2_in_base_x*tube_d_G_m_yz - axis_z_tube_axes2_in_base_x*tube_d_G_m_zz;
-        const real tube_d_c_m_in_base_y_3 = -axis_x_tube_axes2_y*tube_d_G_m_xz -
-            axis_y_tube_axes2_in_base_y*tube_d_G_m_yz - axis_z_tube_axes2_in_base_y*tube_d_G_m_zz;
-        const real tube_d_c_m_in_base_z_3 = -axis_x_tube_axes2_z*tube_d_G_m_xz -
-            axis_y_tube_axes2_in_base_z*tube_d_G_m_yz - axis_z_tube_axes2_in_base_z*tube_d_G_m_zz;
-        const real tube_d_c_m_in_base_x_4 = axis_x_tube_axes2_x*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_x_3;
-        const real tube_d_c_m_in_base_y_4 = axis_x_tube_axes2_y*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_x_3;
-        const real tube_d_c_m_in_base_z_4 = axis_x_tube_axes2_z*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_x_3;
-        const real tube_d_c_m_in_base_x_5 = axis_x_tube_axes2_x*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_y_3;
+        const real tube_d_c_m_t = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
+            tube_d_G_m_in_axes2_yx*tube_n_c1_x - tube_d_G_m_in_axes2_zx*tube_n_c2_x;
+        const real tube_d_c_m_t_2 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
+            tube_d_G_m_in_axes2_yx*tube_n_c1_y - tube_d_G_m_in_axes2_zx*tube_n_c2_y;
+        const real tube_d_c_m_t_3 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
+            tube_d_G_m_in_axes2_yy*tube_n_c1_x - tube_d_G_m_in_axes2_zy*tube_n_c2_x;
+        const real tube_d_c_m_t_4 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
+            tube_d_G_m_in_axes2_yy*tube_n_c1_y - tube_d_G_m_in_axes2_zy*tube_n_c2_y;
+        const real tube_d_c_m_t_5 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
+            tube_d_G_m_in_axes2_yz*tube_n_c1_x - tube_d_G_m_in_axes2_zz*tube_n_c2_x;
+        const real tube_d_c_m_t_6 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
+            tube_d_G_m_in_axes2_yz*tube_n_c1_y - tube_d_G_m_in_axes2_zz*tube_n_c2_y;
+        const real tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_x +
+            tube_d_c_m_t_5*tube_n_c2_x;
+        const real tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_y +
+            tube_d_c_m_t_5*tube_n_c2_y;
+        const real tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_z +
+            tube_d_c_m_t_5*tube_n_c2_z;
+        const real tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_x
+            + tube_d_c_m_t_6*tube_n_c2_x;
+        /* (M_ta) coupling block of M */
+        const real tube_M_ta_t = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
+            tube_dalpha_G_in_axes2_yx*tube_n_c1_x - tube_dalpha_G_in_axes2_zx*tube_n_c2_x;
+        const real tube_M_ta_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
+            tube_dalpha_G_in_axes2_yx*tube_n_c1_y - tube_dalpha_G_in_axes2_zx*tube_n_c2_y;
+        const real tube_M_ta_t_3 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
+            tube_dalpha_G_in_axes2_yx*tube_n_c1_z - tube_dalpha_G_in_axes2_zx*tube_n_c2_z;
+        const real tube_M_ta_t_4 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
+            tube_dalpha_G_in_axes2_yy*tube_n_c1_x - tube_dalpha_G_in_axes2_zy*tube_n_c2_x;
+        const real tube_M_ta_t_5 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
+            tube_dalpha_G_in_axes2_yy*tube_n_c1_y - tube_dalpha_G_in_axes2_zy*tube_n_c2_y;
+        const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
+            tube_dalpha_G_in_axes2_yy*tube_n_c1_z - tube_dalpha_G_in_axes2_zy*tube_n_c2_z;
+        const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
+            tube_dalpha_G_in_axes2_yz*tube_n_c1_x - tube_dalpha_G_in_axes2_zz*tube_n_c2_x;
+        const real tube_M_ta_t_8 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
+            tube_dalpha_G_in_axes2_yz*tube_n_c1_y - tube_dalpha_G_in_axes2_zz*tube_n_c2_y;
+        const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
+            tube_dalpha_G_in_axes2_yz*tube_n_c1_z - tube_dalpha_G_in_axes2_zz*tube_n_c2_z;
+        const real tube_M_ta_t_10 = tube_Q_xy*tube_q_z;
+        const real tube_M_ta_t_11 = tube_Q_xz*tube_q_y;
+        const real tube_M_ta_t_12 = tube_Q_yz*tube_q_x;
+        const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
+            axis_x_tube_axes2_x*tube_M_ta_t - tube_M_ta_t_4*tube_n_c1_x -
+            tube_M_ta_t_7*tube_n_c2_x;
+        const real tube_M_ta_t_14 = tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
+            tube_M_ta_t_4*tube_n_c1_y - tube_M_ta_t_7*tube_n_c2_y - tube_Q_xz*tube_q_x;
+        const real tube_M_ta_t_15 = tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
+            tube_M_ta_t_4*tube_n_c1_z - tube_M_ta_t_7*tube_n_c2_z - tube_Q_xx*tube_q_y;
+        const real tube_M_ta_t_16 = tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
+            tube_M_ta_t_5*tube_n_c1_x - tube_M_ta_t_8*tube_n_c2_x - tube_Q_yy*tube_q_z;
+        const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
+            axis_x_tube_axes2_y*tube_M_ta_t_2 - tube_M_ta_t_5*tube_n_c1_y -
+            tube_M_ta_t_8*tube_n_c2_y;
+        const real tube_M_ta_t_18 = tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
+            tube_M_ta_t_5*tube_n_c1_z - tube_M_ta_t_8*tube_n_c2_z - tube_Q_xy*tube_q_y;
+        const real tube_M_ta_t_19 = tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
+            tube_M_ta_t_6*tube_n_c1_x - tube_M_ta_t_9*tube_n_c2_x - tube_Q_yz*tube_q_z;
+        const real tube_M_ta_t_20 = tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
+            tube_M_ta_t_6*tube_n_c1_y - tube_M_ta_t_9*tube_n_c2_y - tube_Q_zz*tube_q_x;
+        const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
+            axis_x_tube_axes2_z*tube_M_ta_t_3 - tube_M_ta_t_6*tube_n_c1_z -
+            tube_M_ta_t_9*tube_n_c2_z;
         /* (M_aa) rotational block of M */
-        const real tube_M_aa_t = tube_M_ta_t_7*tube_q_in_base_z +
-            tube_d_c_m_in_base_y_4*tube_q_in_base_z -
-            axis_x_tube_axes2_x*tube_dalpha_c_m_in_base_x -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_2 -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_3 -
-            tube_M_ta_t_10*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_y;
-        const real tube_M_aa_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_3 +
-            tube_M_ta_t_8*tube_q_in_base_z + tube_d_c_m_in_base_x_4*tube_q_in_base_z -
-            tube_M_ta_t_11*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_x;
-        const real tube_M_aa_t_3 = tube_M_ta_t_12*tube_q_in_base_y +
-            tube_M_ta_t_9*tube_q_in_base_z + tube_d_c_m_in_base_x_4*tube_q_in_base_y -
-            axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_x -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_2 -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_3 -
-            tube_d_c_m_in_base_y_4*tube_q_in_base_x;
-        const real tube_M_aa_t_4 = axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_3 +
-            tube_M_ta_t_11*tube_q_in_base_x + tube_d_c_m_in_base_x_5*tube_q_in_base_z -
-            tube_M_ta_t_5*tube_q_in_base_z -
-            tube_q_in_base_x*(axis_x_tube_axes2_z*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_y_3);
-        const real tube_M_aa_t_5 = axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_3 +
-            tube_M_ta_t_12*tube_q_in_base_x + tube_M_ta_t_6*tube_q_in_base_z +
-            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_y_3) -
-            tube_d_c_m_in_base_x_5*tube_q_in_base_y;
-        const real tube_M_aa_t_6 = tube_M_ta_t_6*tube_q_in_base_y +
-            tube_q_in_base_y*(axis_x_tube_axes2_x*tube_d_c_m_in_base_z +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_z_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_z_3) - tube_dalpha_c_m_in_base_z -
-            tube_M_ta_t_9*tube_q_in_base_x -
-            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_z_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_z_3);
-        terms[0*count + k] = add ? terms[0*count + k] + tube_Q_t_12 : tube_Q_t_12;  /* total_tube_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + tube_Q_t_13 : tube_Q_t_13;  /* total_tube_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + tube_Q_t_14 : tube_Q_t_14;  /* total_tube_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + tube_Q_t_16 : tube_Q_t_16;  /* total_tube_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + tube_Q_t_17 : tube_Q_t_17;  /* total_tube_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + tube_Q_t_19 : tube_Q_t_19;  /* total_tube_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + tube_M_ta_t_4 : tube_M_ta_t_4;  /* total_tube_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + tube_M_ta_t_5 : tube_M_ta_t_5;  /* total_tube_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + tube_M_ta_t_6 : tube_M_ta_t_6;  /* total_tube_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + tube_M_ta_t_7 : tube_M_ta_t_7;  /* total_tube_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + tube_M_ta_t_8 : tube_M_ta_t_8;  /* total_tube_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + tube_M_ta_t_9 : tube_M_ta_t_9;  /* total_tube_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + tube_M_ta_t_10 : tube_M_ta_t_10;  /* total_tube_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + tube_M_ta_t_11 : tube_M_ta_t_11;  /* total_tube_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + tube_M_ta_t_12 : tube_M_ta_t_12;  /* total_tube_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + tube_M_aa_t : tube_M_aa_t;  /* total_tube_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + tube_M_aa_t_2 : tube_M_aa_t_2;  /* total_tube_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + tube_M_aa_t_3 : tube_M_aa_t_3;  /* total_tube_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + tube_M_aa_t_4 : tube_M_aa_t_4;  /* total_tube_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + tube_M_aa_t_5 : tube_M_aa_t_5;  /* total_tube_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + tube_M_aa_t_6 : tube_M_aa_t_6;  /* total_tube_zz_3 */
+        const real tube_M_aa_t = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
+            tube_dalpha_G_m_in_axes2_yx*tube_n_c1_x - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_x;
+        const real tube_M_aa_t_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
+            tube_dalpha_G_m_in_axes2_yx*tube_n_c1_y - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_y;
+        const real tube_M_aa_t_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
+            tube_dalpha_G_m_in_axes2_yy*tube_n_c1_x - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_x;
+        const real tube_M_aa_t_4 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
+            tube_dalpha_G_m_in_axes2_yy*tube_n_c1_y - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_y;
+        const real tube_M_aa_t_5 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
+            tube_dalpha_G_m_in_axes2_yz*tube_n_c1_x - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_x;
+        const real tube_M_aa_t_6 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
+            tube_dalpha_G_m_in_axes2_yz*tube_n_c1_y - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_y;
+        const real tube_M_aa_t_7 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
+            tube_d_G_m_in_axes2_yx*tube_n_c1_z - tube_d_G_m_in_axes2_zx*tube_n_c2_z;
+        const real tube_M_aa_t_8 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
+            tube_d_G_m_in_axes2_yy*tube_n_c1_z - tube_d_G_m_in_axes2_zy*tube_n_c2_z;
+        const real tube_M_aa_t_9 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
+            tube_d_G_m_in_axes2_yz*tube_n_c1_z - tube_d_G_m_in_axes2_zz*tube_n_c2_z;
+        const real tube_M_aa_t_10 = tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z -
+            axis_x_tube_axes2_x*tube_M_aa_t - tube_M_aa_t_3*tube_n_c1_x -
+            tube_M_aa_t_5*tube_n_c2_x - tube_M_ta_t_16*tube_q_z - tube_d_c_m_xz*tube_q_y;
+        const real tube_M_aa_t_11 = tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x -
+            axis_x_tube_axes2_y*tube_M_aa_t - tube_M_aa_t_3*tube_n_c1_y -
+            tube_M_aa_t_5*tube_n_c2_y - tube_M_ta_t_17*tube_q_z - tube_d_c_m_xx*tube_q_z;
+        const real tube_M_aa_t_12 = tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y -
+            axis_x_tube_axes2_z*tube_M_aa_t - tube_M_aa_t_3*tube_n_c1_z -
+            tube_M_aa_t_5*tube_n_c2_z - tube_M_ta_t_18*tube_q_z - tube_d_c_m_xy*tube_q_x;
+        const real tube_M_aa_t_13 = tube_M_ta_t_14*tube_q_z +
+            tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_z +
+            tube_d_c_m_t_6*tube_n_c2_z) - axis_x_tube_axes2_y*tube_M_aa_t_2 -
+            tube_M_aa_t_4*tube_n_c1_y - tube_M_aa_t_6*tube_n_c2_y - tube_M_ta_t_20*tube_q_x -
+            tube_d_c_m_yx*tube_q_z;
+        const real tube_M_aa_t_14 = tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y -
+            axis_x_tube_axes2_z*tube_M_aa_t_2 - tube_M_aa_t_4*tube_n_c1_z -
+            tube_M_aa_t_6*tube_n_c2_z - tube_M_ta_t_21*tube_q_x -
+            tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_y +
+            tube_d_c_m_t_6*tube_n_c2_y);
+        const real tube_M_aa_t_15 = tube_M_ta_t_18*tube_q_x +
+            tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 + tube_M_aa_t_8*tube_n_c1_x +
+            tube_M_aa_t_9*tube_n_c2_x) - tube_dalpha_c_m_zz - tube_M_ta_t_15*tube_q_y -
+            tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + tube_M_aa_t_8*tube_n_c1_y +
+            tube_M_aa_t_9*tube_n_c2_y);
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + tube_Q_xx : tube_Q_xx;  /* M_tt_tube_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + tube_Q_xy : tube_Q_xy;  /* M_tt_tube_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + tube_Q_xz : tube_Q_xz;  /* M_tt_tube_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + tube_Q_yy : tube_Q_yy;  /* M_tt_tube_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + tube_Q_yz : tube_Q_yz;  /* M_tt_tube_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + tube_Q_zz : tube_Q_zz;  /* M_tt_tube_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + tube_M_ta_t_13 : tube_M_ta_t_13;  /* M_ta_tube_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + tube_M_ta_t_14 : tube_M_ta_t_14;  /* M_ta_tube_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + tube_M_ta_t_15 : tube_M_ta_t_15;  /* M_ta_tube_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + tube_M_ta_t_16 : tube_M_ta_t_16;  /* M_ta_tube_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + tube_M_ta_t_17 : tube_M_ta_t_17;  /* M_ta_tube_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + tube_M_ta_t_18 : tube_M_ta_t_18;  /* M_ta_tube_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + tube_M_ta_t_19 : tube_M_ta_t_19;  /* M_ta_tube_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + tube_M_ta_t_20 : tube_M_ta_t_20;  /* M_ta_tube_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + tube_M_ta_t_21 : tube_M_ta_t_21;  /* M_ta_tube_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + tube_M_aa_t_10 : tube_M_aa_t_10;  /* M_aa_tube_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + tube_M_aa_t_11 : tube_M_aa_t_11;  /* M_aa_tube_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + tube_M_aa_t_12 : tube_M_aa_t_12;  /* M_aa_tube_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + tube_M_aa_t_13 : tube_M_aa_t_13;  /* M_aa_tube_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + tube_M_aa_t_14 : tube_M_aa_t_14;  /* M_aa_tube_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + tube_M_aa_t_15 : tube_M_aa_t_15;  /* M_aa_tube_zz */
         o[0*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -4559,81 +4702,82 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_tube_xx = sums[21*w + k];
+        const real M_tt_ups_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_tube_xx = sums[21*w + k];
-        const real total_ups_xx = sums[0*w + k];
-        const real M_tt_xx = m_star + total_tube_xx - total_ups_xx;
-        const real total_tube_xy = sums[22*w + k];
-        const real total_ups_xy = sums[1*w + k];
-        const real M_tt_xy = total_tube_xy - total_ups_xy;
-        const real total_tube_xz = sums[23*w + k];
-        const real total_ups_xz = sums[2*w + k];
-        const real M_tt_xz = total_tube_xz - total_ups_xz;
-        const real total_tube_yy = sums[24*w + k];
-        const real total_ups_yy = sums[3*w + k];
-        const real M_tt_yy = m_star + total_tube_yy - total_ups_yy;
-        const real total_tube_yz = sums[25*w + k];
-        const real total_ups_yz = sums[4*w + k];
-        const real M_tt_yz = total_tube_yz - total_ups_yz;
-        const real total_tube_zz = sums[26*w + k];
-        const real total_ups_zz = sums[5*w + k];
-        const real M_tt_zz = m_star + total_tube_zz - total_ups_zz;
+        const real M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star;
+        const real M_tt_tube_xy = sums[22*w + k];
+        const real M_tt_ups_xy = sums[1*w + k];
+        const real M_tt_xy = M_tt_tube_xy + M_tt_ups_xy;
+        const real M_tt_tube_xz = sums[23*w + k];
+        const real M_tt_ups_xz = sums[2*w + k];
+        const real M_tt_xz = M_tt_tube_xz + M_tt_ups_xz;
+        const real M_tt_tube_yy = sums[24*w + k];
+        const real M_tt_ups_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_tube_yy + M_tt_ups_yy + m_star;
+        const real M_tt_tube_yz = sums[25*w + k];
+        const real M_tt_ups_yz = sums[4*w + k];
+        const real M_tt_yz = M_tt_tube_yz + M_tt_ups_yz;
+        const real M_tt_tube_zz = sums[26*w + k];
+        const real M_tt_ups_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_tube_zz + M_tt_ups_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real total_tube_xx_2 = sums[27*w + k];
-        const real total_ups_xx_2 = sums[6*w + k];
-        const real M_ta_xx = total_ups_xx_2 - total_tube_xx_2;
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_tube_xy_2 = sums[28*w + k];
-        const real total_ups_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z + total_tube_xy_2 - total_ups_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_tube_xz_2 = sums[29*w + k];
-        const real total_ups_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_ups_xz_2 - h_star_in_base_y - total_tube_xz_2;
-        const real total_tube_yx = sums[30*w + k];
-        const real total_ups_yx = sums[9*w + k];
-        const real M_ta_yx = total_ups_yx - h_star_in_base_z - total_tube_yx;
-        const real total_tube_yy_2 = sums[31*w + k];
-        const real total_ups_yy_2 = sums[10*w + k];
-        const real M_ta_yy = total_tube_yy_2 - total_ups_yy_2;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_tube_yz_2 = sums[32*w + k];
-        const real total_ups_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_ups_yz_2 - total_tube_yz_2;
-        const real total_tube_zx = sums[33*w + k];
-        const real total_ups_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_ups_zx - total_tube_zx;
-        const real total_tube_zy = sums[34*w + k];
-        const real total_ups_zy = sums[13*w + k];
-        const real M_ta_zy = total_tube_zy - h_star_in_base_x - total_ups_zy;
-        const real total_tube_zz_2 = sums[35*w + k];
-        const real total_ups_zz_2 = sums[14*w + k];
-        const real M_ta_zz = total_tube_zz_2 - total_ups_zz_2;
+        const real M_ta_tube_xx = sums[27*w + k];
+        const real M_ta_ups_xx = sums[6*w + k];
+        const real M_ta_xx = M_ta_tube_xx + M_ta_ups_xx;
+        const real M_ta_tube_xy = sums[28*w + k];
+        const real M_ta_ups_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_tube_xy + M_ta_ups_xy + h_star_z;
+        const real M_ta_tube_xz = sums[29*w + k];
+        const real M_ta_ups_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_tube_xz + M_ta_ups_xz - h_star_y;
+        const real M_ta_tube_yx = sums[30*w + k];
+        const real M_ta_ups_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_tube_yx + M_ta_ups_yx - h_star_z;
+        const real M_ta_tube_yy = sums[31*w + k];
+        const real M_ta_ups_yy = sums[10*w + k];
+        const real M_ta_yy = M_ta_tube_yy + M_ta_ups_yy;
+        const real M_ta_tube_yz = sums[32*w + k];
+        const real M_ta_ups_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_tube_yz + M_ta_ups_yz + h_star_x;
+        const real M_ta_tube_zx = sums[33*w + k];
+        const real M_ta_ups_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_tube_zx + M_ta_ups_zx + h_star_y;
+        const real M_ta_tube_zy = sums[34*w + k];
+        const real M_ta_ups_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_tube_zy + M_ta_ups_zy - h_star_x;
+        const real M_ta_tube_zz = sums[35*w + k];
+        const real M_ta_ups_zz = sums[14*w + k];
+        const real M_ta_zz = M_ta_tube_zz + M_ta_ups_zz;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_tube_xx_3 = sums[36*w + k];
-        const real total_ups_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 + total_tube_xx_3 - total_ups_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_tube_xy_3 = sums[37*w + k];
-        const real total_ups_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_ups_xy_3 - total_tube_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_tube_xz_3 = sums[38*w + k];
-        const real total_ups_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 + total_tube_xz_3 - total_ups_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_tube_yy_3 = sums[39*w + k];
-        const real total_ups_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_tube_yy_3 - total_ups_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_tube_yz_3 = sums[40*w + k];
-        const real total_ups_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_ups_yz_3 - total_tube_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_tube_zz_3 = sums[41*w + k];
-        const real total_ups_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 + total_tube_zz_3 - total_ups_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_tube_xx = sums[36*w + k];
+        const real M_aa_ups_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_tube_xx + M_aa_ups_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_tube_xy = sums[37*w + k];
+        const real M_aa_ups_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_tube_xy + M_aa_ups_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_tube_xz = sums[38*w + k];
+        const real M_aa_ups_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_tube_xz + M_aa_ups_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_tube_yy = sums[39*w + k];
+        const real M_aa_ups_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_tube_yy + M_aa_ups_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_tube_yz = sums[40*w + k];
+        const real M_aa_ups_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_tube_yz + M_aa_ups_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_tube_zz = sums[41*w + k];
+        const real M_aa_ups_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_tube_zz + M_aa_ups_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[6*w + k] = M_tt_xy;
@@ -4643,6 +4787,7 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[8*w + k] = M_tt_yz;
         M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
+        /* (M_ta) coupling block of M */
         M[3*w + k] = M_ta_xx;
         M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
@@ -4661,6 +4806,7 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[26*w + k] = M_ta_zy;
         M[17*w + k] = M_ta_zz;
         M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -4769,16 +4915,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -4789,30 +4938,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -4834,9 +4992,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -4854,27 +5012,27 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -4892,175 +5050,182 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-u_1) centripetal acceleration of the connection point */
         const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        const real ups_u_1_in_axes2_z = axis_z_ups_axes2_x*ups_u_1_x +
+            axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-u_1) centripetal acceleration of the connection point */
-        const real ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x;
-        const real ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
-        const real ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
-        const real ups_u_1_tip_z = axis_z_ups_axes2_in_base_x*ups_u_1_x +
-            axis_z_ups_axes2_in_base_y*ups_u_1_y + axis_z_ups_axes2_in_base_z*ups_u_1_z;
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real ups_rel_o_z = ups_u_1_tip_z - ups_bias_z;
-        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real ups_qdd_2_o_t = inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z;
+        const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z;
+        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z;
         /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        const real ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2;
+        const real ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o;
         /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x;
-        const real ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
+        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_xy = -2*ups_W_2_xy - ups_qdd_2_o_t;
-        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
-        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_phi_3_o_x = -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x;
+        const real ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
+        const real ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
+        const real ups_B_2_o_in_axes2_yx = inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 +
+            ups_B_2_o_t_3 - ups_bias_t*ups_qd_2);
+        const real ups_B_2_o_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
+        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
         /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real ups_acc_3_o_x = ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y +
-            ups_axis_x_z*ups_u_1_z - ups_g_r3_x;
-        const real ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y;
-        const real ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x;
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
+        const real ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2;
+        const real ups_acc_3_o_in_axes2_x = axis_x_ups_axes2_x*ups_u_1_x +
+            axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
+        const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z;
+        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
-            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_o_t + ups_Sigma_2_xx*ups_qdd_2_o_t +
-            ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x - ups_B_2_o_xy*ups_Sigma_2_yy -
-            ups_J_group_2_yz*ups_alpha_1_o_t_2 - ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+            - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ups_c_o_y = ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z -
-            ups_h_3_x*ups_qdd_2_o_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z;
-        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z;
-        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z;
+        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
         /* (Z_a) rotational part of Z */
-        const real ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z;
-        const real ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z -
-            ups_U_in_base_z*ups_q_in_base_x;
-        const real ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x -
-            ups_U_in_base_x*ups_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Z_a_t : ups_Z_a_t;  /* total_ups_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* total_ups_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* total_ups_z_2 */
+        const real ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z;
+        const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
+        const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_U_x : ups_U_x;  /* Z_t_ups_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_U_y : ups_U_y;  /* Z_t_ups_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_U_z : ups_U_z;  /* Z_t_ups_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Z_a_t : ups_Z_a_t;  /* Z_a_ups_x */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* Z_a_ups_y */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* Z_a_ups_z */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
@@ -5088,27 +5253,27 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -5126,48 +5291,66 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        /* (tube-S_dot) velocity of the connection point */
+        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
+            tube_base_frame_xy*tube_s_1;
+        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
+            tube_base_frame_yy*tube_s_1;
+        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
+            tube_base_frame_zy*tube_s_1;
+        const real tube_S_dot_t = tube_s_1*tube_s_2;
+        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
+        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
+            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
+        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
+            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
+        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
+            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
+        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
+            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
+        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
+            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
+        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
+            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
+        const real omega_x = s[15*w + j];
+        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
+        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
+        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
+            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
+            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
+            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -5190,88 +5373,85 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1;
-        const real tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y;
-        const real tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2;
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
+        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_x = tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x;
-        const real tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1;
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1;
-        const real tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y;
-        const real tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
+        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
+        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        /* (tube-mu2_c3) moment along direction 2 that goes with it */
+        const real tube_mu2_c3 = 1/tube_size_c3;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*inv_tube_size_c3*tube_f_c3_t;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
+        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3_t*tube_mu2_c3;
+        const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
+        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3*tube_mu2_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -5291,10 +5471,10 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -5312,31 +5492,31 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -5348,277 +5528,294 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_157 = 1/tube_w_1_t_75;
-        const real tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70;
-        const real tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71;
-        const real tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72;
-        const real tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73;
-        const real tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74;
-        /* (tube-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z;
-        const real tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_3;
         /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_tip_x = axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y +
-            axis_x_tube_axes2_z*omega_z;
-        const real tube_omega_tip_y = axis_y_tube_axes2_in_base_x*omega_x +
-            axis_y_tube_axes2_in_base_y*omega_y + axis_y_tube_axes2_in_base_z*omega_z;
-        const real tube_omega_tip_z = axis_z_tube_axes2_in_base_x*omega_x +
-            axis_z_tube_axes2_in_base_y*omega_y + axis_z_tube_axes2_in_base_z*omega_z;
-        const real tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_y;
+        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
+            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
+        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
+            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
+        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
         /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_x;
+        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
+            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
+        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
         /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z -
-            tube_end_p3_r1_x*tube_omega_tip_x;
-        /* (tube-S_dot) velocity of the connection point */
-        const real tube_S_dot_tip_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_tip_y = axis_y_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_dot_y + axis_y_tube_axes2_in_base_z*tube_S_dot_z;
-        const real tube_S_dot_tip_z = axis_z_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_dot_y + axis_z_tube_axes2_in_base_z*tube_S_dot_z;
-        /* (tube-qd_3) rate of joint 3 */
-        const real tube_qd_3_t = R(1.35)*tube_eta_1;
-        const real tube_qd_3_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_3_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_3_t_4 = inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 +
-            tube_S_dot_tip_z*tube_w_1_t_77 + tube_qd_3_t*tube_w_1_t_78 +
-            tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80);
-        const real tube_qd_3_t_5 = inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 +
-            tube_S_dot_tip_z*tube_w_1_t_65 + tube_qd_3_t*tube_w_1_t_66 +
-            tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67 -
-            tube_qd_3_t_4*tube_w_1_t_69);
-        const real tube_qd_3_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z +
-            tube_S_dot_tip_y*tube_w_1_t_50 + tube_qd_3_t*tube_w_1_t_51 +
-            tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58 +
-            tube_qd_3_t_5*tube_w_1_t_53);
-        const real tube_qd_3_t_7 = tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 +
-            tube_qd_3_t_3*tube_w_1_t_16 + tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25;
-        const real tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7;
+        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-qd_1) rate of joint 1 */
+        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+        const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
+        const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
+        const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
+        const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
+        const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
+        const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
+        const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
+        const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
+        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t +
+            tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*tube_qd_1_t_6 +
+            tube_qd_1_t_4*tube_qd_1_t_7 + tube_qd_1_t_5*tube_qd_1_t_8);
+        /* (tube-qd_2) rate of joint 2 */
+        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
+            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67);
+        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 +
+            tube_qd_2_t*tube_w_1_t_53);
+        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 +
+            tube_qd_1_t_6*tube_w_1_t_15 + tube_qd_1_t_8*tube_w_1_t_16 +
+            tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25;
+        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
         /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_t = tube_qd_3_t_4*tube_s_2;
-        const real tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4;
-        /* (tube-u_1) centripetal acceleration of the connection point */
-        const real tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2;
-        const real tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3;
-        const real tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t;
-        /* (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8;
-        const real tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8;
+        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
+        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
         /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_t = tube_omega_1_t*tube_omega_1_t;
-        const real tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2;
-        const real tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8;
-        const real tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2;
+        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
+        const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
+        /* (tube-u_1) centripetal acceleration of the connection point */
+        const real tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
+        const real tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
+        const real tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
         /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_root_2*tube_zeta_2_y;
-        const real tube_bias_t_2 = tube_W_2_xy*tube_root_2;
-        const real tube_bias_t_3 = 2*tube_S_dot_tip_x;
-        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8;
-        const real tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2;
-        const real tube_bias_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_z = 2*tube_bias_t + tube_bias_t_5;
+        const real tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2;
+        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2;
+        const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
+        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_2;
+        const real tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y;
+        const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
+        const real tube_bias_in_axes2_z = 2*tube_bias_t + tube_bias_t_5;
         /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real tube_rel_o_y = axis_y_tube_axes2_in_base_x*tube_u_1_x +
-            axis_y_tube_axes2_in_base_y*tube_u_1_y + axis_y_tube_axes2_in_base_z*tube_u_1_z -
-            tube_bias_y;
-        const real tube_rel_o_z = axis_z_tube_axes2_in_base_x*tube_u_1_x +
-            axis_z_tube_axes2_in_base_y*tube_u_1_y + axis_z_tube_axes2_in_base_z*tube_u_1_z -
-            tube_bias_z;
+        const real tube_rel_o_in_axes2_y = axis_y_tube_axes2_x*tube_u_1_x +
+            axis_y_tube_axes2_y*tube_u_1_y + axis_y_tube_axes2_z*tube_u_1_z -
+            tube_bias_in_axes2_y;
+        const real tube_rel_o_in_axes2_z = axis_z_tube_axes2_x*tube_u_1_x +
+            axis_z_tube_axes2_y*tube_u_1_y + axis_z_tube_axes2_z*tube_u_1_z -
+            tube_bias_in_axes2_z;
         /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_nd_m1_y = tube_end_p1_r3_x*tube_omega_1_t_2 +
-            tube_end_p1_r3_x*tube_omega_tip_y - tube_end_p1_r3_y*tube_omega_tip_x;
-        const real tube_nd_m1_z = tube_end_p1_r3_x*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_x - tube_end_p1_r3_x*tube_qd_3_t_8;
+        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
+        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
         /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x;
-        const real tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y;
-        const real tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8;
-        const real tube_nu_1_t_4 = tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y;
+        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
+        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
+        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
         /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_nd_m2_x = tube_end_p2_r1_x*tube_omega_tip_x -
-            tube_end_p2_r1_x*tube_omega_1_t - tube_end_p2_r3_x*tube_omega_tip_z;
-        const real tube_nd_m2_y = tube_end_p2_r1_x*tube_omega_1_t_2 +
-            tube_end_p2_r1_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_z;
+        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
+        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
+        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
         /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 - tube_end_p2_r3_x*tube_omega_1_t) -
-            tube_nd_m2_y*tube_nu_1_t_2;
+        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
+            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
+        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
         const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
         /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_nd_m3_x = tube_end_p3_r3_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_omega_1_t - tube_end_p3_r3_y*tube_omega_tip_x;
-        const real tube_nd_m3_z = tube_end_p3_r1_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_qd_3_t_8 - tube_end_p3_r3_y*tube_omega_tip_z;
+        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
+        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
+        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
         /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 + tube_end_p3_r3_x*tube_omega_1_t) -
-            tube_nd_m3_z*tube_nu_1_t_3;
-        const real tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x;
-        /* (tube-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real tube_qdd_3_o_t = R(1.35)*tube_nu_1;
-        const real tube_qdd_3_o_t_2 = R(1.35)*tube_nu_2;
-        const real tube_qdd_3_o_t_3 = R(1.35)*tube_nu_3;
-        const real tube_qdd_3_o_t_4 = inv_tube_w_1_t_157*(tube_qdd_3_o_t*tube_w_1_t_78 +
-            tube_qdd_3_o_t_2*tube_w_1_t_79 + tube_qdd_3_o_t_3*tube_w_1_t_80 +
-            tube_rel_o_y*tube_w_1_t_76 + tube_rel_o_z*tube_w_1_t_77);
-        const real tube_qdd_3_o_t_5 = inv_tube_w_1_t_129*(tube_qdd_3_o_t*tube_w_1_t_66 +
-            tube_qdd_3_o_t_3*tube_w_1_t_68 + tube_rel_o_y*tube_w_1_t_64 +
-            tube_rel_o_z*tube_w_1_t_65 - tube_qdd_3_o_t_2*tube_w_1_t_67 -
-            tube_qdd_3_o_t_4*tube_w_1_t_69);
-        const real tube_qdd_3_o_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_o_z +
-            tube_qdd_3_o_t*tube_w_1_t_51 + tube_qdd_3_o_t_3*tube_w_1_t_52 +
-            tube_qdd_3_o_t_4*tube_w_1_t_58 + tube_qdd_3_o_t_5*tube_w_1_t_53 +
-            tube_rel_o_y*tube_w_1_t_50);
-        const real tube_qdd_3_o_t_7 = tube_qdd_3_o_t*tube_w_1_t_15 +
-            tube_qdd_3_o_t_3*tube_w_1_t_16 + tube_qdd_3_o_t_6*tube_w_1_t_21 +
-            tube_rel_o_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_3_o_t*tube_w_1_t_35 +
-            tube_qdd_3_o_t_3*tube_w_1_t_36 + tube_qdd_3_o_t_4*tube_w_1_t_45 +
-            tube_qdd_3_o_t_5*tube_w_1_t_41 + tube_rel_o_y*tube_w_1_t_34 -
-            tube_qdd_3_o_t_6*tube_w_1_t_37) - tube_qdd_3_o_t_4*tube_w_1_t_29 -
-            tube_qdd_3_o_t_5*tube_w_1_t_25;
-        const real tube_qdd_3_o_t_8 = inv_tube_w_1_t_16*tube_qdd_3_o_t_7;
+        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
+        /* (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
+        const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
+        const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
+        const real tube_qdd_1_o = inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_o_in_axes2_y +
+            tube_qd_1_t_2*tube_rel_o_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_o_t +
+            tube_qd_1_t_4*tube_qdd_1_o_t_2 + tube_qd_1_t_5*tube_qdd_1_o_t_3);
+        /* (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+        const real tube_qdd_2_o_t = inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 +
+            tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_o_in_axes2_z*tube_w_1_t_65 - tube_qdd_1_o*tube_w_1_t_69 -
+            tube_qdd_1_o_t_2*tube_w_1_t_67);
+        const real tube_qdd_2_o_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
+            tube_qdd_1_o*tube_w_1_t_58 + tube_qdd_1_o_t*tube_w_1_t_51 +
+            tube_qdd_1_o_t_3*tube_w_1_t_52 + tube_qdd_2_o_t*tube_w_1_t_53 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_50);
+        const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*tube_w_1_t_15 +
+            tube_qdd_1_o_t_3*tube_w_1_t_16 + tube_qdd_2_o_t_2*tube_w_1_t_21 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1_o*tube_w_1_t_45 +
+            tube_qdd_1_o_t*tube_w_1_t_35 + tube_qdd_1_o_t_3*tube_w_1_t_36 +
+            tube_qdd_2_o_t*tube_w_1_t_41 + tube_rel_o_in_axes2_y*tube_w_1_t_34 -
+            tube_qdd_2_o_t_2*tube_w_1_t_37) - tube_qdd_1_o*tube_w_1_t_29 -
+            tube_qdd_2_o_t*tube_w_1_t_25;
+        const real tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
         /* (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real tube_alpha_1_o_t = tube_qdd_3_o_t_4*tube_s_2;
-        const real tube_alpha_1_o_t_2 = tube_c_2*tube_qdd_3_o_t_4;
+        const real tube_alpha_1_o_in_axes2_x = tube_qdd_1_o*tube_s_2;
+        const real tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o;
         /* (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real tube_alpha_2_o_x = tube_alpha_1_o_t - tube_zeta_2_x;
-        const real tube_alpha_2_o_y = -tube_alpha_1_o_t_2 - tube_zeta_2_y;
+        const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
+        const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
         /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real tube_B_2_o_xy = -tube_W_2_xy - tube_qdd_3_o_t_8;
-        const real tube_B_2_o_yx = tube_qdd_3_o_t_8 - tube_W_2_xy;
-        const real tube_B_2_o_zx = tube_zeta_2_y - tube_alpha_2_o_y;
-        const real tube_B_2_o_zy = tube_alpha_2_o_x - tube_zeta_2_x;
+        const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
+        const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
+        const real tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
+        const real tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
         /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real tube_g_r0_x = m->tube_g_r0_x[i];
-        const real tube_g_r0_y = m->tube_g_r0_y[i];
-        const real tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x;
-        const real tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1;
-        const real tube_g_r0_z = m->tube_g_r0_z[i];
-        const real tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y;
-        const real tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2;
-        const real tube_acc_3_o_x = axis_x_tube_axes2_x*tube_u_1_x +
-            axis_x_tube_axes2_y*tube_u_1_y + axis_x_tube_axes2_z*tube_u_1_z - tube_g_r3_x;
-        const real tube_acc_3_o_y = tube_bias_t_4 + tube_qdd_3_o_t_8*tube_root_2 - tube_bias_t_2 -
-            tube_g_r3_y;
-        const real tube_acc_3_o_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x -
-            tube_alpha_2_o_y*tube_root_2;
+        const real tube_acc_3_t = m->tube_acc_3_t[i];
+        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
+        const real tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
+        const real tube_acc_3_o_t = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
+        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
+        const real tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_s_2;
+        const real tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_o_t*tube_s_2;
+        const real tube_acc_3_o_in_axes2_x = axis_x_tube_axes2_x*tube_u_1_x +
+            axis_x_tube_axes2_y*tube_u_1_y + axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x;
+        const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + tube_qdd_2_o*tube_root_2 -
+            tube_bias_t_2 - tube_g_in_axes2_y;
+        const real tube_acc_3_o_in_axes2_z = tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z -
+            tube_alpha_2_o_in_axes2_y*tube_root_2;
         /* (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real tube_h_3_x = m->tube_h_3_x[i];
-        const real tube_h_3_y = m->tube_h_3_y[i];
-        const real tube_h_3_z = m->tube_h_3_z[i];
+        const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
+        const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
+        const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
+        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
+        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
+        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
         const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_o_x = tube_acc_3_o_x*tube_link3_mass - tube_B_2_o_xy*tube_h_3_z -
-            tube_alpha_1_o_t_2*tube_h_3_y - tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3);
-        const real tube_f_3_o_y = tube_B_2_o_yx*tube_h_3_x + tube_acc_3_o_y*tube_link3_mass +
-            tube_h_3_z*(tube_W_2_t + tube_W_2_t_3) - tube_alpha_1_o_t*tube_h_3_y;
-        const real tube_f_3_o_z = tube_B_2_o_zx*tube_h_3_x + tube_acc_3_o_z*tube_link3_mass -
-            tube_B_2_o_zy*tube_h_3_z - tube_h_3_y*(tube_W_2_t + tube_W_2_t_2);
+        const real tube_f_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y + tube_h_3_in_spec2_x*(-tube_f_3_o_t_2 -
+            tube_f_3_o_t_3) - tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z;
+        const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_acc_3_o_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_o_t +
+            tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y;
+        const real tube_f_3_o_in_axes2_z = tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x +
+            tube_acc_3_o_in_axes2_z*tube_link3_mass - tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z -
+            tube_h_3_in_spec2_y*(tube_f_3_o_t + tube_f_3_o_t_2);
         /* (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real tube_J_group_2_xy = m->tube_J_group_2_xy[i];
-        const real tube_J_group_2_xz = m->tube_J_group_2_xz[i];
-        const real tube_J_group_2_yz = m->tube_J_group_2_yz[i];
-        const real tube_Sigma_2_yy = m->tube_Sigma_2_yy[i];
-        const real tube_Sigma_2_zz = m->tube_Sigma_2_zz[i];
-        const real tube_h_2_y = m->tube_h_2_y[i];
-        const real tube_h_2_z = m->tube_h_2_z[i];
-        const real tube_mu_2_o_x = tube_B_2_o_yx*tube_J_group_2_xz + tube_B_2_o_zy*tube_Sigma_2_yy
-            + tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_o_t +
-            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_o_zx*tube_J_group_2_xy -
-            tube_acc_3_o_y*tube_h_3_y - tube_acc_3_o_z*tube_h_3_z;
-        const real tube_Sigma_2_xx = m->tube_Sigma_2_xx[i];
-        const real tube_h_2_x = m->tube_h_2_x[i];
-        const real tube_mu_2_o_y = tube_B_2_o_zy*tube_J_group_2_xy + tube_acc_3_o_x*tube_h_3_y +
-            tube_g_r1_x*tube_h_2_x - tube_B_2_o_xy*tube_J_group_2_yz -
-            tube_B_2_o_zx*tube_Sigma_2_xx - tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) -
-            tube_Sigma_2_zz*tube_alpha_1_o_t_2 - tube_acc_3_o_z*tube_h_3_x -
-            tube_g_r3_x*tube_h_2_y;
-        const real tube_mu_2_o_z = tube_B_2_o_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t -
-            tube_W_2_t_2) + tube_J_group_2_xz*tube_alpha_1_o_t + tube_acc_3_o_x*tube_h_3_z +
-            tube_acc_3_o_y*tube_h_3_x - tube_B_2_o_xy*tube_Sigma_2_yy -
-            tube_J_group_2_yz*tube_alpha_1_o_t_2 - tube_g_r3_x*tube_h_2_z -
-            tube_g_r3_y*tube_h_2_x;
+        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
+        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
+        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
+        const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
+        const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
+        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
+        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
+        const real tube_mu_2_o_in_axes2_x = tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
+            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z;
+        const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
+        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
+        const real tube_mu_2_o_in_axes2_y = tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
+            tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - tube_g_in_axes2_x*tube_h_2_in_spec2_y;
+        const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+            tube_J_group_2_in_axes2_xy*(tube_f_3_o_t - tube_f_3_o_t_2) +
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
+            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
         /* (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real tube_N_2_o_y = tube_mu_2_o_y - tube_f_3_o_z*tube_root_2;
-        const real tube_N_2_o_z = tube_mu_2_o_z + tube_f_3_o_y*tube_root_2;
+        const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
+            tube_f_3_o_in_axes2_z*tube_root_2;
+        const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
+            tube_f_3_o_in_axes2_y*tube_root_2;
         /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real tube_G_o_t = inv_tube_w_1_t_16*tube_N_2_o_z;
-        const real tube_G_o_t_2 = inv_tube_w_1_t_57*tube_G_o_t*tube_w_1_t_17;
-        const real tube_G_o_t_3 = inv_tube_w_1_t_95*(tube_G_o_t*tube_w_1_t_21 -
+        const real tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
+        const real tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17;
+        const real tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 -
             tube_G_o_t_2*tube_w_1_t_37);
-        const real tube_G_o_t_4 = inv_tube_w_1_t_129*(tube_G_o_t_2*tube_w_1_t_41 +
+        const real tube_G_o_t_4 = inv_tube_w_1_t_63*(tube_G_o_t_2*tube_w_1_t_41 +
             tube_G_o_t_3*tube_w_1_t_53 - tube_G_o_t*tube_w_1_t_25);
-        const real tube_G_o_t_5 = inv_tube_w_1_t_157*(tube_G_o_t_2*tube_w_1_t_45 +
-            tube_G_o_t_3*tube_w_1_t_58 + tube_mu_2_o_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 -
-            tube_G_o_t_4*tube_w_1_t_69 - tube_N_2_o_y*tube_c_2);
-        const real tube_G_o_t_6 = tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 +
-            tube_G_o_t_3*tube_w_1_t_50 + tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_w_1_t_76;
-        const real tube_G_o_t_7 = inv_tube_w_1_t_95*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 +
-            tube_G_o_t_5*tube_w_1_t_77;
-        const real tube_G_o_t_8 = tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 +
-            tube_G_o_t_3*tube_w_1_t_51 + tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_w_1_t_78;
-        const real tube_G_o_t_9 = R(1.35)*tube_G_o_t_8;
-        const real tube_G_o_t_10 = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_w_1_t_79;
-        const real tube_G_o_t_11 = R(1.35)*tube_G_o_t_10;
-        const real tube_G_o_t_12 = tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 +
-            tube_G_o_t_3*tube_w_1_t_52 + tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_w_1_t_80;
-        const real tube_G_o_t_13 = R(1.35)*tube_G_o_t_12;
-        /* (tube-U) velocity and gravity terms of the leg force */
-        const real tube_U_in_base_x = axis_x_tube_axes2_x*tube_f_3_o_x +
-            axis_y_tube_axes2_in_base_x*tube_G_o_t_6 + axis_z_tube_axes2_in_base_x*tube_G_o_t_7;
-        const real tube_U_in_base_y = axis_x_tube_axes2_y*tube_f_3_o_x +
-            axis_y_tube_axes2_in_base_y*tube_G_o_t_6 + axis_z_tube_axes2_in_base_y*tube_G_o_t_7;
-        const real tube_U_in_base_z = axis_x_tube_axes2_z*tube_f_3_o_x +
-            axis_y_tube_axes2_in_base_z*tube_G_o_t_6 + axis_z_tube_axes2_in_base_z*tube_G_o_t_7;
+        const real tube_G_o_t_5 = inv_tube_w_1_t_75*(tube_G_o_t_2*tube_w_1_t_45 +
+            tube_G_o_t_3*tube_w_1_t_58 + tube_N_2_o_in_axes2_y*tube_c_2 +
+            tube_mu_2_o_in_axes2_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 -
+            tube_G_o_t_4*tube_w_1_t_69);
+        const real tube_G_o_in_axes2_y = tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 +
+            tube_G_o_t_3*tube_w_1_t_50 + tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_qd_1_t;
+        const real tube_G_o_in_axes2_z = inv_tube_w_1_t_49*tube_G_o_t_3 +
+            tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_qd_1_t_2;
+        /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_G_m1_o_t = tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 +
+            tube_G_o_t_3*tube_w_1_t_51 + tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_qd_1_t_3;
+        const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
+        /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_qd_1_t_4;
+        const real tube_G_m2_o = -R(1.35)*tube_G_m2_o_t;
+        /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
+           balances the leg's inertia and weight along all freedoms */
+        const real tube_G_m3_o_t = tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 +
+            tube_G_o_t_3*tube_w_1_t_52 + tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_qd_1_t_5;
+        const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
         /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
            balances the leg's inertia and weight along all freedoms */
-        const real tube_G_m_o_x = tube_G_o_t_11*tube_end_p2_r3_y - tube_G_o_t_13*tube_end_p3_r1_x;
-        const real tube_G_m_o_y = -tube_G_o_t_11*tube_end_p2_r3_x - tube_G_o_t_9*tube_end_p1_r1_x;
-        const real tube_G_m_o_z = tube_G_o_t_13*tube_end_p3_r3_x + tube_G_o_t_9*tube_end_p1_r3_y;
+        const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*tube_end_p2_in_axes2_y -
+            tube_G_m3_o*tube_end_p3_in_axes2_z;
+        const real tube_G_m_o_in_axes2_y = tube_G_m2_o*tube_n_m2_in_axes2_y -
+            tube_G_m1_o*tube_end_p1_in_axes2_z;
+        const real tube_G_m_o_in_axes2_z = tube_G_m1_o*tube_n_m1_in_axes2_z +
+            tube_G_m3_o*tube_n_m3_in_axes2_z;
+        /* (tube-U) velocity and gravity terms of the leg force */
+        const real tube_U_x = axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
+            axis_y_tube_axes2_x*tube_G_o_in_axes2_y + axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
+        const real tube_U_y = axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
+            axis_y_tube_axes2_y*tube_G_o_in_axes2_y + axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
+        const real tube_U_z = axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
+            axis_y_tube_axes2_z*tube_G_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
         /* (Z_a) rotational part of Z */
-        const real tube_Z_a_t = axis_x_tube_axes2_x*tube_G_m_o_x +
-            axis_y_tube_axes2_in_base_x*tube_G_m_o_y + axis_z_tube_axes2_in_base_x*tube_G_m_o_z +
-            tube_U_in_base_z*tube_q_in_base_y - tube_U_in_base_y*tube_q_in_base_z;
-        const real tube_Z_a_t_2 = axis_x_tube_axes2_y*tube_G_m_o_x +
-            axis_y_tube_axes2_in_base_y*tube_G_m_o_y + axis_z_tube_axes2_in_base_y*tube_G_m_o_z +
-            tube_U_in_base_x*tube_q_in_base_z - tube_U_in_base_z*tube_q_in_base_x;
-        const real tube_Z_a_t_3 = axis_x_tube_axes2_z*tube_G_m_o_x +
-            axis_y_tube_axes2_in_base_z*tube_G_m_o_y + axis_z_tube_axes2_in_base_z*tube_G_m_o_z +
-            tube_U_in_base_y*tube_q_in_base_x - tube_U_in_base_x*tube_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + tube_U_in_base_x : tube_U_in_base_x;  /* total_tube_x */
-        terms[1*count + k] = add ? terms[1*count + k] + tube_U_in_base_y : tube_U_in_base_y;  /* total_tube_y */
-        terms[2*count + k] = add ? terms[2*count + k] + tube_U_in_base_z : tube_U_in_base_z;  /* total_tube_z */
-        terms[3*count + k] = add ? terms[3*count + k] + tube_Z_a_t : tube_Z_a_t;  /* total_tube_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + tube_Z_a_t_2 : tube_Z_a_t_2;  /* total_tube_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + tube_Z_a_t_3 : tube_Z_a_t_3;  /* total_tube_z_2 */
+        const real tube_Z_a_t = axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
+            axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z
+            + tube_U_z*tube_q_y - tube_U_y*tube_q_z;
+        const real tube_Z_a_t_2 = axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
+            axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z
+            + tube_U_x*tube_q_z - tube_U_z*tube_q_x;
+        const real tube_Z_a_t_3 = axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
+            axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z
+            + tube_U_y*tube_q_x - tube_U_x*tube_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + tube_U_x : tube_U_x;  /* Z_t_tube_x */
+        terms[1*count + k] = add ? terms[1*count + k] + tube_U_y : tube_U_y;  /* Z_t_tube_y */
+        terms[2*count + k] = add ? terms[2*count + k] + tube_U_z : tube_U_z;  /* Z_t_tube_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + tube_Z_a_t : tube_Z_a_t;  /* Z_a_tube_x */
+        terms[4*count + k] = add ? terms[4*count + k] + tube_Z_a_t_2 : tube_Z_a_t_2;  /* Z_a_tube_y */
+        terms[5*count + k] = add ? terms[5*count + k] + tube_Z_a_t_3 : tube_Z_a_t_3;  /* Z_a_tube_z */
         o[0*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -5639,33 +5836,35 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_tube_x = sums[6*w + k];
-        const real total_ups_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_tube_x + total_ups_x;
+        const real Z_t_tube_x = sums[6*w + k];
+        const real Z_t_ups_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_tube_x + Z_t_ups_x;
         const real Z_p_y = s[19*w + k];
-        const real total_tube_y = sums[7*w + k];
-        const real total_ups_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_tube_y + total_ups_y;
+        const real Z_t_tube_y = sums[7*w + k];
+        const real Z_t_ups_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_tube_y + Z_t_ups_y;
         const real Z_p_z = s[20*w + k];
-        const real total_tube_z = sums[8*w + k];
-        const real total_ups_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_tube_z + total_ups_z;
+        const real Z_t_tube_z = sums[8*w + k];
+        const real Z_t_ups_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_tube_z + Z_t_ups_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_tube_x_2 = sums[9*w + k];
-        const real total_ups_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_tube_x_2 + total_ups_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_tube_y_2 = sums[10*w + k];
-        const real total_ups_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_tube_y_2 + total_ups_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_tube_z_2 = sums[11*w + k];
-        const real total_ups_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_tube_z_2 + total_ups_z_2;
+        const real Z_a_tube_x = sums[9*w + k];
+        const real Z_a_ups_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_tube_x + Z_a_ups_x + Z_q_x;
+        const real Z_a_tube_y = sums[10*w + k];
+        const real Z_a_ups_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_tube_y + Z_a_ups_y + Z_q_y;
+        const real Z_a_tube_z = sums[11*w + k];
+        const real Z_a_ups_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_tube_z + Z_a_ups_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -5779,27 +5978,27 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -5818,31 +6017,33 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-w_2) reciprocal vector 2 */
+        const real ups_w_2_in_axes2_y = 1/ups_root_2;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
-        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
-        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        const real ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y;
+        const real ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z;
+        const real ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x;
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = ups_w_3_x;
+        o[1*count + k] = ups_w_3_y;
+        o[2*count + k] = ups_w_3_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + (ups_H_a_3_x +
-            (ups_H_a_3_y + ups_H_a_3_z));
+        o[7*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y +
+            ups_H_a_3_z));
         o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_root_2) > TOLERANCE*R(1.38293));
@@ -5951,27 +6152,27 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -5989,48 +6190,27 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -6053,142 +6233,160 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r3_y = -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
-            - tube_end_p1_r0_x*tube_s_1);
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_in_axes2_z = tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx
+            + tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
+            tube_c_1*tube_n_m1_t_11);
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_y = -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
-            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz);
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
+            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz);
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r3_x = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
-            - tube_end_p3_r0_x*tube_s_1);
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_in_axes2_z = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx
+            + tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
+            tube_c_1*tube_n_m3_t_2);
+        const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        const real tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        /* (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2 */
-        const real tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_3;
+        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
+        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        const real tube_n_c1_t = tube_s_1*tube_s_2;
+        const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
+        const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
+            tube_base_frame_xy*tube_n_c1_t_2;
+        const real tube_n_c1_y = tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
+            tube_base_frame_yy*tube_n_c1_t_2;
+        const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
+            tube_base_frame_zy*tube_n_c1_t_2;
+        /* (tube-mu_c1) the moment that goes with it */
+        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
+        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
+        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
+            tube_m3_c1_t*tube_n_m3_in_axes2_z;
+        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
+        const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
+        const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
+        /* (tube-mu_c2) the moment that goes with it */
+        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
+        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
+        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
+            tube_m1_c2_t*tube_n_m1_in_axes2_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
         /* (tube-mu1_c3) moment along direction 1 that goes with it */
         const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t;
+        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
         /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2;
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4;
-        const real tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5;
-        const real tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 -
-            tube_end_p3_r3_x*tube_f_c1_t_5;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_z;
-        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_x;
-        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_y;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t;
-        const real tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2;
-        const real tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = axis_y_tube_axes2_in_base_x*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_z;
-        const real tube_Hk_a_2_y = axis_y_tube_axes2_in_base_y*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_x;
-        const real tube_Hk_a_2_z = axis_y_tube_axes2_in_base_z*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_y;
+        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
         /* (tube-mu_c3) the moment that goes with it */
-        const real tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y -
-            tube_end_p3_r1_x*tube_mu3_c3;
-        const real tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x +
-            tube_end_p1_r1_x*tube_mu1_c3;
-        const real tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3;
-        const real tube_mu_c3_in_base_x = axis_x_tube_axes2_x*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_x*tube_mu_c3_y + axis_z_tube_axes2_in_base_x*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_y = axis_x_tube_axes2_y*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_y*tube_mu_c3_y + axis_z_tube_axes2_in_base_y*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_z = axis_x_tube_axes2_z*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c3_y + axis_z_tube_axes2_in_base_z*tube_mu_c3_z;
-        o[0*count + k] = axis_y_tube_axes2_in_base_x;
-        o[1*count + k] = axis_y_tube_axes2_in_base_y;
-        o[2*count + k] = axis_y_tube_axes2_in_base_z;
+        const real axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y;
+        const real axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z;
+        const real axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x;
+        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
+            tube_end_p3_in_axes2_z*tube_mu3_c3;
+        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
+            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
+        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
+            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
+        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+            tube_mu_c3_in_axes2_y*tube_n_c1_x + tube_mu_c3_in_axes2_z*tube_n_c2_x;
+        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+            tube_mu_c3_in_axes2_y*tube_n_c1_y + tube_mu_c3_in_axes2_z*tube_n_c2_y;
+        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+            tube_mu_c3_in_axes2_y*tube_n_c1_z + tube_mu_c3_in_axes2_z*tube_n_c2_z;
+        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
+            tube_mu_c1_in_axes2_y*tube_n_c1_x + tube_mu_c1_in_axes2_z*tube_n_c2_x +
+            tube_n_c1_z*tube_q_y - tube_n_c1_y*tube_q_z;
+        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
+            tube_mu_c1_in_axes2_y*tube_n_c1_y + tube_mu_c1_in_axes2_z*tube_n_c2_y +
+            tube_n_c1_x*tube_q_z - tube_n_c1_z*tube_q_x;
+        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
+            tube_mu_c1_in_axes2_y*tube_n_c1_z + tube_mu_c1_in_axes2_z*tube_n_c2_z +
+            tube_n_c1_y*tube_q_x - tube_n_c1_x*tube_q_y;
+        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+        const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*tube_n_c1_x +
+            tube_mu_c2_in_axes2_z*tube_n_c2_x + tube_n_c2_z*tube_q_y -
+            axis_x_tube_axes2_x*tube_mu_c2_t - tube_n_c2_y*tube_q_z;
+        const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*tube_n_c1_y +
+            tube_mu_c2_in_axes2_z*tube_n_c2_y + tube_n_c2_x*tube_q_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t - tube_n_c2_z*tube_q_x;
+        const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*tube_n_c1_z +
+            tube_mu_c2_in_axes2_z*tube_n_c2_z + tube_n_c2_y*tube_q_x -
+            axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y;
+        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        o[0*count + k] = tube_n_c1_x;
+        o[1*count + k] = tube_n_c1_y;
+        o[2*count + k] = tube_n_c1_z;
+        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
-        o[6*count + k] = axis_z_tube_axes2_in_base_x;
-        o[7*count + k] = axis_z_tube_axes2_in_base_y;
-        o[8*count + k] = axis_z_tube_axes2_in_base_z;
+        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        o[6*count + k] = tube_n_c2_x;
+        o[7*count + k] = tube_n_c2_y;
+        o[8*count + k] = tube_n_c2_z;
+        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = tube_Hk_a_2_x;
         o[10*count + k] = tube_Hk_a_2_y;
         o[11*count + k] = tube_Hk_a_2_z;
-        o[12*count + k] = tube_mu_c3_in_base_x;
-        o[13*count + k] = tube_mu_c3_in_base_y;
-        o[14*count + k] = tube_mu_c3_in_base_z;
-        o[16*count + k] = ((axis_y_tube_axes2_in_base_x + (axis_y_tube_axes2_in_base_y +
-            axis_y_tube_axes2_in_base_z)) + ((tube_Hk_a_1_x + tube_Hk_a_1_y) + (tube_Hk_a_1_z +
-            axis_z_tube_axes2_in_base_x))) + (((axis_z_tube_axes2_in_base_y +
-            axis_z_tube_axes2_in_base_z) + (tube_Hk_a_2_x + tube_Hk_a_2_y)) + ((tube_Hk_a_2_z +
-            tube_mu_c3_in_base_x) + (tube_mu_c3_in_base_y + tube_mu_c3_in_base_z)));
+        /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+        o[12*count + k] = tube_mu_c3_x;
+        o[13*count + k] = tube_mu_c3_y;
+        o[14*count + k] = tube_mu_c3_z;
+        o[16*count + k] = ((tube_n_c1_x + (tube_n_c1_y + tube_n_c1_z)) + ((tube_Hk_a_1_x +
+            tube_Hk_a_1_y) + (tube_Hk_a_1_z + tube_n_c2_x))) + (((tube_n_c2_y + tube_n_c2_z) +
+            (tube_Hk_a_2_x + tube_Hk_a_2_y)) + ((tube_Hk_a_2_z + tube_mu_c3_x) + (tube_mu_c3_y +
+            tube_mu_c3_z)));
         o[15*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1);
     }
 }
@@ -6325,27 +6523,27 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -6363,48 +6561,66 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        /* (tube-S_dot) velocity of the connection point */
+        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
+            tube_base_frame_xy*tube_s_1;
+        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
+            tube_base_frame_yy*tube_s_1;
+        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
+            tube_base_frame_zy*tube_s_1;
+        const real tube_S_dot_t = tube_s_1*tube_s_2;
+        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
+        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
+            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
+        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
+            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
+        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
+            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
+        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
+            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
+        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
+            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
+        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
+            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
+        const real omega_x = s[15*w + j];
+        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
+        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
+        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
+            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
+            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
+            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -6427,96 +6643,96 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1;
-        const real tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y;
-        const real tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2;
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
+        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_x = tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x;
-        const real tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1;
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1;
-        const real tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y;
-        const real tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
+        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
+        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        const real tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        /* (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2 */
-        const real tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
+        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
         /* (tube-mu1_c3) moment along direction 1 that goes with it */
         const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t;
+        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
         /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*tube_f_c1_t_4;
-        const real tube_w_1_t_7 = R(1.35)*tube_f_c1_t_5;
-        const real tube_w_1_t_8 = R(1.35)*tube_f_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_f_c2_t_2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
+        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
+        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
+        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
+        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
         const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
         const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -6536,10 +6752,10 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -6557,31 +6773,31 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -6593,141 +6809,138 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_157 = 1/tube_w_1_t_75;
-        /* (tube-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z;
-        const real tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_3;
         /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_tip_x = axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y +
-            axis_x_tube_axes2_z*omega_z;
-        const real tube_omega_tip_y = axis_y_tube_axes2_in_base_x*omega_x +
-            axis_y_tube_axes2_in_base_y*omega_y + axis_y_tube_axes2_in_base_z*omega_z;
-        const real tube_omega_tip_z = axis_z_tube_axes2_in_base_x*omega_x +
-            axis_z_tube_axes2_in_base_y*omega_y + axis_z_tube_axes2_in_base_z*omega_z;
-        const real tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_y;
+        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
+            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
+        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
+            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
+        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
         /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_x;
+        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
+            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
+        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
         /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z -
-            tube_end_p3_r1_x*tube_omega_tip_x;
-        /* (tube-S_dot) velocity of the connection point */
-        const real tube_S_dot_tip_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_tip_y = axis_y_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_dot_y + axis_y_tube_axes2_in_base_z*tube_S_dot_z;
-        const real tube_S_dot_tip_z = axis_z_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_dot_y + axis_z_tube_axes2_in_base_z*tube_S_dot_z;
-        /* (tube-qd_3) rate of joint 3 */
-        const real tube_qd_3_t = R(1.35)*tube_eta_1;
-        const real tube_qd_3_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_3_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_3_t_4 =
-            inv_tube_w_1_t_157*(inv_tube_w_1_t_157*tube_S_dot_tip_y*tube_w_1_t_70 +
-            inv_tube_w_1_t_157*tube_S_dot_tip_z*tube_w_1_t_71 +
-            inv_tube_w_1_t_157*tube_qd_3_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_157*tube_qd_3_t_2*tube_w_1_t_73 +
-            inv_tube_w_1_t_157*tube_qd_3_t_3*tube_w_1_t_74);
-        const real tube_qd_3_t_5 = inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 +
-            tube_S_dot_tip_z*tube_w_1_t_65 + tube_qd_3_t*tube_w_1_t_66 +
-            tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67 -
-            tube_qd_3_t_4*tube_w_1_t_69);
-        const real tube_qd_3_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z +
-            tube_S_dot_tip_y*tube_w_1_t_50 + tube_qd_3_t*tube_w_1_t_51 +
-            tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58 +
-            tube_qd_3_t_5*tube_w_1_t_53);
-        const real tube_qd_3_t_7 = tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 +
-            tube_qd_3_t_3*tube_w_1_t_16 + tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25;
-        const real tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7;
+        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-qd_1) rate of joint 1 */
+        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+        const real tube_qd_1_t = R(1.35)*tube_eta_1;
+        const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
+        const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
+        const real tube_qd_1 =
+            inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
+            inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
+            inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
+            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73 +
+            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74);
+        /* (tube-qd_2) rate of joint 2 */
+        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67);
+        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
+        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
+            + tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25;
+        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
         /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_t = tube_qd_3_t_4*tube_s_2;
-        const real tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4;
+        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
+        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
+        /* (tube-W_2) centripetal tensor of link 2 */
+        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
         /* (tube-u_1) centripetal acceleration of the connection point */
-        const real tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2;
-        const real tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3;
-        const real tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t;
-        /* (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8;
-        const real tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8;
+        const real tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
+        const real tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
+        const real tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
         /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = 2*tube_S_dot_tip_x;
-        const real tube_bias_y = tube_bias_t*tube_qd_3_t_8 -
-            tube_omega_1_t*tube_omega_1_t_2*tube_root_2;
-        const real tube_bias_z = tube_bias_t*tube_omega_1_t_2 + 2*tube_root_2*tube_zeta_2_y;
+        const real tube_bias_t = 2*tube_S_dot_in_axes2_x;
+        const real tube_bias_in_axes2_y = tube_bias_t*tube_qd_2 +
+            tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_root_2;
+        const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*tube_root_2 -
+            tube_bias_t*tube_omega_1_in_axes2_y;
         /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real tube_rel_o_y = axis_y_tube_axes2_in_base_x*tube_u_1_x +
-            axis_y_tube_axes2_in_base_y*tube_u_1_y + axis_y_tube_axes2_in_base_z*tube_u_1_z -
-            tube_bias_y;
-        const real tube_rel_o_z = axis_z_tube_axes2_in_base_x*tube_u_1_x +
-            axis_z_tube_axes2_in_base_y*tube_u_1_y + axis_z_tube_axes2_in_base_z*tube_u_1_z -
-            tube_bias_z;
+        const real tube_rel_o_in_axes2_y = axis_y_tube_axes2_x*tube_u_1_x +
+            axis_y_tube_axes2_y*tube_u_1_y + axis_y_tube_axes2_z*tube_u_1_z -
+            tube_bias_in_axes2_y;
+        const real tube_rel_o_in_axes2_z = axis_z_tube_axes2_x*tube_u_1_x +
+            axis_z_tube_axes2_y*tube_u_1_y + axis_z_tube_axes2_z*tube_u_1_z -
+            tube_bias_in_axes2_z;
         /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_nd_m1_y = tube_end_p1_r3_x*tube_omega_1_t_2 +
-            tube_end_p1_r3_x*tube_omega_tip_y - tube_end_p1_r3_y*tube_omega_tip_x;
-        const real tube_nd_m1_z = tube_end_p1_r3_x*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_x - tube_end_p1_r3_x*tube_qd_3_t_8;
+        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
+        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
         /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x;
-        const real tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y;
-        const real tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8;
-        const real tube_nu_1_t_4 = tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y;
+        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
+        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
+        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
         /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_nd_m2_x = tube_end_p2_r1_x*tube_omega_tip_x -
-            tube_end_p2_r1_x*tube_omega_1_t - tube_end_p2_r3_x*tube_omega_tip_z;
-        const real tube_nd_m2_y = tube_end_p2_r1_x*tube_omega_1_t_2 +
-            tube_end_p2_r1_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_z;
+        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
+        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
+        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
         /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 - tube_end_p2_r3_x*tube_omega_1_t) -
-            tube_nd_m2_y*tube_nu_1_t_2;
+        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
+            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
+        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
         const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
         /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_nd_m3_x = tube_end_p3_r3_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_omega_1_t - tube_end_p3_r3_y*tube_omega_tip_x;
-        const real tube_nd_m3_z = tube_end_p3_r1_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_qd_3_t_8 - tube_end_p3_r3_y*tube_omega_tip_z;
+        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
+        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
+        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
         /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 + tube_end_p3_r3_x*tube_omega_1_t) -
-            tube_nd_m3_z*tube_nu_1_t_3;
-        const real tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x;
+        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
         /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c1 = tube_rel_o_y - tube_f_c1_t_4*tube_nu_1 -
-            tube_f_c1_t_5*tube_nu_3;
+        const real tube_gamma_c1 = tube_rel_o_in_axes2_y - tube_m1_c1_t*tube_nu_1 -
+            tube_m3_c1_t*tube_nu_3;
         /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c2 = tube_rel_o_z + tube_f_c2_t_2*tube_nu_3 - tube_f_c2_t*tube_nu_1;
+        const real tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 -
+            tube_m1_c2_t*tube_nu_1;
         /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
            */
         const real tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 -
-            tube_mu1_c3*tube_nu_1;
+            tube_mu1_c3_t*tube_nu_1;
+        /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
         o[0*count + k] = tube_gamma_c1;
+        /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
+           */
         o[1*count + k] = tube_gamma_c2;
+        /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
+           */
         o[2*count + k] = tube_gamma_c3;
         o[4*count + k] = tube_gamma_c1 + (tube_gamma_c2 + tube_gamma_c3);
         o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -6835,33 +7048,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -6869,31 +7069,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -6921,9 +7147,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -6941,27 +7167,27 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -6979,186 +7205,195 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
         /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
-        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
-        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
         /* (ups-S_ddot) acceleration of the connection point */
         const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x;
-        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
-        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
-        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z;
+        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
+            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
-            ups_S_ddot_z*ups_axis_x_z - ups_g_r3_x;
-        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
-        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
         /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
-        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
-        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
-        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        const real ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x;
+        const real ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
+        const real ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
+        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
+        const real ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2;
+        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
+            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x;
+        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
         /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_phi_3_x = -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        const real ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_phi_3_in_axes2_x = ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_t - ups_phi_3_t_2) -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
-            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
-            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
-            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
+            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_phi_3_t) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
-            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
-        const real ups_c_in_base_x = axis_y_ups_axes2_x*ups_c_y +
-            axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x;
-        const real ups_c_in_base_y = axis_y_ups_axes2_y*ups_c_y +
-            axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x;
-        const real ups_c_in_base_z = axis_y_ups_axes2_z*ups_c_y +
-            axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x;
+        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_phi_3_t_2);
+        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_x = axis_y_ups_axes2_x*ups_c_in_axes2_y +
+            axis_z_ups_axes2_x*ups_c_in_axes2_z - axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
+        const real ups_c_y = axis_y_ups_axes2_y*ups_c_in_axes2_y +
+            axis_z_ups_axes2_y*ups_c_in_axes2_z - axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
+        const real ups_c_z = axis_y_ups_axes2_z*ups_c_in_axes2_y +
+            axis_z_ups_axes2_z*ups_c_in_axes2_z - axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real ups_R_a_t = ups_c_in_base_z*ups_q_in_base_y - ups_c_in_base_y*ups_q_in_base_z;
-        const real ups_R_a_t_2 = ups_c_in_base_x*ups_q_in_base_z -
-            ups_c_in_base_z*ups_q_in_base_x;
-        const real ups_R_a_t_3 = ups_c_in_base_y*ups_q_in_base_x -
-            ups_c_in_base_x*ups_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_c_in_base_x : ups_c_in_base_x;  /* total_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_c_in_base_y : ups_c_in_base_y;  /* total_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_c_in_base_z : ups_c_in_base_z;  /* total_ups_z */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_R_a_t : ups_R_a_t;  /* total_ups_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_R_a_t_2 : ups_R_a_t_2;  /* total_ups_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_R_a_t_3 : ups_R_a_t_3;  /* total_ups_z_2 */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        const real ups_R_a_t = ups_c_y*ups_q_z - ups_c_z*ups_q_y;
+        const real ups_R_a_t_2 = ups_c_z*ups_q_x - ups_c_x*ups_q_z;
+        const real ups_R_a_t_3 = ups_c_x*ups_q_y - ups_c_y*ups_q_x;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+        const real ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z;
+        const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
+        const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_c_x : ups_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_c_y : ups_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_c_z : ups_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_R_a_t : ups_R_a_t;  /* R_a_ups_x */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_R_a_t_2 : ups_R_a_t_2;  /* R_a_ups_y */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_R_a_t_3 : ups_R_a_t_3;  /* R_a_ups_z */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = axis_x_ups_axes2_x;
+        o[1*count + k] = axis_x_ups_axes2_y;
+        o[2*count + k] = axis_x_ups_axes2_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
@@ -7196,27 +7431,27 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -7234,48 +7469,66 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        /* (tube-S_dot) velocity of the connection point */
+        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
+            tube_base_frame_xy*tube_s_1;
+        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
+            tube_base_frame_yy*tube_s_1;
+        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
+            tube_base_frame_zy*tube_s_1;
+        const real tube_S_dot_t = tube_s_1*tube_s_2;
+        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
+        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
+            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
+        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
+            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
+        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
+            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
+        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
+            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
+        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
+            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
+        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
+            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
+        const real omega_x = s[15*w + j];
+        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
+        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
+        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
+            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
+            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
+            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -7298,96 +7551,119 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1;
-        const real tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y;
-        const real tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2;
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
+        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_x = tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x;
-        const real tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1;
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1;
-        const real tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y;
-        const real tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
+        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
+        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        const real tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        /* (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2 */
-        const real tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
+        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        /* (tube-mu_c1) the moment that goes with it */
+        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
+        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
+        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
+            tube_m3_c1_t*tube_n_m3_in_axes2_z;
+        /* (tube-mu_c2) the moment that goes with it */
+        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
+        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
+        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
+            tube_m1_c2_t*tube_n_m1_in_axes2_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
         /* (tube-mu1_c3) moment along direction 1 that goes with it */
         const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t;
+        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
         /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
+        /* (tube-mu_c3) the moment that goes with it */
+        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
+            tube_end_p3_in_axes2_z*tube_mu3_c3;
+        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
+            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
+        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
+            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
+        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
+        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
+        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*tube_f_c1_t_4;
-        const real tube_w_1_t_7 = R(1.35)*tube_f_c1_t_5;
-        const real tube_w_1_t_8 = R(1.35)*tube_f_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_f_c2_t_2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
+        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
+        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
+        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
+        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
         const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
         const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -7407,10 +7683,10 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -7428,31 +7704,31 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -7464,364 +7740,353 @@ INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_157 = 1/tube_w_1_t_75;
-        const real tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70;
-        const real tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71;
-        const real tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72;
-        const real tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73;
-        const real tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74;
-        /* (tube-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z;
-        const real tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_3;
         /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_tip_x = axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y +
-            axis_x_tube_axes2_z*omega_z;
-        const real tube_omega_tip_y = axis_y_tube_axes2_in_base_x*omega_x +
-            axis_y_tube_axes2_in_base_y*omega_y + axis_y_tube_axes2_in_base_z*omega_z;
-        const real tube_omega_tip_z = axis_z_tube_axes2_in_base_x*omega_x +
-            axis_z_tube_axes2_in_base_y*omega_y + axis_z_tube_axes2_in_base_z*omega_z;
-        const real tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_y;
+        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
+            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
+        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
+            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
+        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
         /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_x;
+        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
+            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
+        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
         /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z -
-            tube_end_p3_r1_x*tube_omega_tip_x;
-        /* (tube-S_dot) velocity of the connection point */
-        const real tube_S_dot_tip_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_tip_y = axis_y_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_dot_y + axis_y_tube_axes2_in_base_z*tube_S_dot_z;
-        const real tube_S_dot_tip_z = axis_z_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_dot_y + axis_z_tube_axes2_in_base_z*tube_S_dot_z;
-        /* (tube-qd_3) rate of joint 3 */
-        const real tube_qd_3_t = R(1.35)*tube_eta_1;
-        const real tube_qd_3_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_3_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_3_t_4 = inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 +
-            tube_S_dot_tip_z*tube_w_1_t_77 + tube_qd_3_t*tube_w_1_t_78 +
-            tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80);
-        const real tube_qd_3_t_5 = inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 +
-            tube_S_dot_tip_z*tube_w_1_t_65 + tube_qd_3_t*tube_w_1_t_66 +
-            tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67 -
-            tube_qd_3_t_4*tube_w_1_t_69);
-        const real tube_qd_3_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z +
-            tube_S_dot_tip_y*tube_w_1_t_50 + tube_qd_3_t*tube_w_1_t_51 +
-            tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58 +
-            tube_qd_3_t_5*tube_w_1_t_53);
-        const real tube_qd_3_t_7 = tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 +
-            tube_qd_3_t_3*tube_w_1_t_16 + tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25;
-        const real tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7;
+        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-qd_1) rate of joint 1 */
+        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+        const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
+        const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
+        const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
+        const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
+        const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
+        const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
+        const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
+        const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
+        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t +
+            tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*tube_qd_1_t_6 +
+            tube_qd_1_t_4*tube_qd_1_t_7 + tube_qd_1_t_5*tube_qd_1_t_8);
+        /* (tube-qd_2) rate of joint 2 */
+        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
+            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67);
+        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 +
+            tube_qd_2_t*tube_w_1_t_53);
+        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 +
+            tube_qd_1_t_6*tube_w_1_t_15 + tube_qd_1_t_8*tube_w_1_t_16 +
+            tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25;
+        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
         /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_t = tube_qd_3_t_4*tube_s_2;
-        const real tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4;
-        /* (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8;
-        const real tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8;
+        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
+        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
         /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_t = tube_omega_1_t*tube_omega_1_t;
-        const real tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2;
-        const real tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8;
-        const real tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2;
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_root_2*tube_zeta_2_y;
-        const real tube_bias_t_2 = tube_W_2_xy*tube_root_2;
-        const real tube_bias_t_3 = 2*tube_S_dot_tip_x;
-        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8;
-        const real tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2;
-        const real tube_bias_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_z = 2*tube_bias_t + tube_bias_t_5;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_nd_m1_y = tube_end_p1_r3_x*tube_omega_1_t_2 +
-            tube_end_p1_r3_x*tube_omega_tip_y - tube_end_p1_r3_y*tube_omega_tip_x;
-        const real tube_nd_m1_z = tube_end_p1_r3_x*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_x - tube_end_p1_r3_x*tube_qd_3_t_8;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x;
-        const real tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y;
-        const real tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8;
-        const real tube_nu_1_t_4 = tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_nd_m2_x = tube_end_p2_r1_x*tube_omega_tip_x -
-            tube_end_p2_r1_x*tube_omega_1_t - tube_end_p2_r3_x*tube_omega_tip_z;
-        const real tube_nd_m2_y = tube_end_p2_r1_x*tube_omega_1_t_2 +
-            tube_end_p2_r1_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_z;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 - tube_end_p2_r3_x*tube_omega_1_t) -
-            tube_nd_m2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_nd_m3_x = tube_end_p3_r3_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_omega_1_t - tube_end_p3_r3_y*tube_omega_tip_x;
-        const real tube_nd_m3_z = tube_end_p3_r1_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_qd_3_t_8 - tube_end_p3_r3_y*tube_omega_tip_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 + tube_end_p3_r3_x*tube_omega_1_t) -
-            tube_nd_m3_z*tube_nu_1_t_3;
-        const real tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x;
-        /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real tube_g_r0_x = m->tube_g_r0_x[i];
-        const real tube_g_r0_y = m->tube_g_r0_y[i];
-        const real tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x;
-        const real tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1;
-        const real tube_g_r0_z = m->tube_g_r0_z[i];
-        const real tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y;
-        const real tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2;
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4;
-        const real tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5;
-        const real tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 -
-            tube_end_p3_r3_x*tube_f_c1_t_5;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_z;
-        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_x;
-        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_y;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t;
-        const real tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2;
-        const real tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = axis_y_tube_axes2_in_base_x*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_z;
-        const real tube_Hk_a_2_y = axis_y_tube_axes2_in_base_y*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_x;
-        const real tube_Hk_a_2_z = axis_y_tube_axes2_in_base_z*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_y;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y -
-            tube_end_p3_r1_x*tube_mu3_c3;
-        const real tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x +
-            tube_end_p1_r1_x*tube_mu1_c3;
-        const real tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3;
-        const real tube_mu_c3_in_base_x = axis_x_tube_axes2_x*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_x*tube_mu_c3_y + axis_z_tube_axes2_in_base_x*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_y = axis_x_tube_axes2_y*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_y*tube_mu_c3_y + axis_z_tube_axes2_in_base_y*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_z = axis_x_tube_axes2_z*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c3_y + axis_z_tube_axes2_in_base_z*tube_mu_c3_z;
+        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
+        const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
         /* (tube-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y;
+        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z;
+        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x;
+        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x;
         /* (tube-S_ddot) acceleration of the connection point */
-        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2;
-        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3;
-        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t;
+        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
+        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
+        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
+        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+        const real tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2;
+        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2;
+        const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
+        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_2;
+        const real tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y;
+        const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
+        const real tube_bias_in_axes2_z = 2*tube_bias_t + tube_bias_t_5;
         /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-        const real tube_rel_y = axis_y_tube_axes2_in_base_x*tube_S_ddot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_ddot_y + axis_y_tube_axes2_in_base_z*tube_S_ddot_z
-            - tube_bias_y;
-        const real tube_rel_z = axis_z_tube_axes2_in_base_x*tube_S_ddot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_ddot_y + axis_z_tube_axes2_in_base_z*tube_S_ddot_z
-            - tube_bias_z;
+        const real tube_rel_in_axes2_y = axis_y_tube_axes2_x*tube_S_ddot_x +
+            axis_y_tube_axes2_y*tube_S_ddot_y + axis_y_tube_axes2_z*tube_S_ddot_z -
+            tube_bias_in_axes2_y;
+        const real tube_rel_in_axes2_z = axis_z_tube_axes2_x*tube_S_ddot_x +
+            axis_z_tube_axes2_y*tube_S_ddot_y + axis_z_tube_axes2_z*tube_S_ddot_z -
+            tube_bias_in_axes2_z;
+        /* (tube-nd_m1) rate of moment direction 1 */
+        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
+        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
+        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
+        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
+        /* (tube-nd_m2) rate of moment direction 2 */
+        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
+        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
+        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
+        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
+            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
+        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
+        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
+        /* (tube-nd_m3) rate of moment direction 3 */
+        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
+        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
+        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
+        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
+        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
         /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real tube_alpha_tip_x = alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y +
-            alpha_z*axis_x_tube_axes2_z;
-        const real tube_alpha_tip_y = alpha_x*axis_y_tube_axes2_in_base_x +
-            alpha_y*axis_y_tube_axes2_in_base_y + alpha_z*axis_y_tube_axes2_in_base_z;
-        const real tube_alpha_tip_z = alpha_x*axis_z_tube_axes2_in_base_x +
-            alpha_y*axis_z_tube_axes2_in_base_y + alpha_z*axis_z_tube_axes2_in_base_z;
-        const real tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x -
-            tube_alpha_tip_z*tube_end_p1_r3_y;
+        const real tube_alpha_in_axes2_y = alpha_x*axis_y_tube_axes2_x +
+            alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z;
+        const real tube_alpha_in_axes2_z = alpha_x*axis_z_tube_axes2_x +
+            alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z;
+        const real tube_etad_1_t = tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z -
+            tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z;
         const real tube_etad_1 = tube_nu_1 - tube_etad_1_t;
         /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y -
-            tube_alpha_tip_y*tube_end_p2_r3_x;
+        const real tube_alpha_in_axes2_x = alpha_x*axis_x_tube_axes2_x +
+            alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z;
+        const real tube_etad_2_t = tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y;
         const real tube_etad_2 = tube_nu_2 - tube_etad_2_t;
         /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-        const real tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x -
-            tube_alpha_tip_z*tube_end_p3_r3_x;
+        const real tube_etad_3_t = tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z -
+            tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z;
         const real tube_etad_3 = tube_nu_3 - tube_etad_3_t;
         /* (tube-qdd_1) acceleration of joint 1 */
         const real tube_qdd_1_t = R(1.35)*tube_etad_1;
         const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
         const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-        const real tube_qdd_1_t_4 = inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 +
-            tube_qdd_1_t_2*tube_w_1_t_79 + tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76
-            + tube_rel_z*tube_w_1_t_77);
-        const real tube_qdd_1_t_5 = inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 -
-            tube_qdd_1_t_2*tube_w_1_t_67 - tube_qdd_1_t_4*tube_w_1_t_69);
-        const real tube_qdd_1_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z +
-            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
-            tube_qdd_1_t_4*tube_w_1_t_58 + tube_qdd_1_t_5*tube_w_1_t_53 +
-            tube_rel_y*tube_w_1_t_50);
-        const real tube_qdd_1_t_7 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
-            tube_qdd_1_t_6*tube_w_1_t_21 + tube_rel_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35 +
-            tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
-            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
-            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
-            tube_qdd_1_t_5*tube_w_1_t_25;
-        const real tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7;
+        const real tube_qdd_1 = inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
+            tube_qd_1_t_2*tube_rel_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_t +
+            tube_qd_1_t_4*tube_qdd_1_t_2 + tube_qd_1_t_5*tube_qdd_1_t_3);
+        /* (tube-qdd_2) acceleration of joint 2 */
+        const real tube_qdd_2_t = inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 +
+            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69 -
+            tube_qdd_1_t_2*tube_w_1_t_67);
+        const real tube_qdd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z +
+            tube_qdd_1*tube_w_1_t_58 + tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
+            tube_qdd_2_t*tube_w_1_t_53 + tube_rel_in_axes2_y*tube_w_1_t_50);
+        const real tube_qdd_2_t_3 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
+            tube_qdd_2_t_2*tube_w_1_t_21 + tube_rel_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
+            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
+            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25;
+        const real tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3;
         /* (tube-alpha_1) angular acceleration of link 1 */
-        const real tube_alpha_1_t = tube_qdd_1_t_4*tube_s_2;
-        const real tube_alpha_1_t_2 = tube_c_2*tube_qdd_1_t_4;
+        const real tube_alpha_1_in_axes2_x = tube_qdd_1*tube_s_2;
+        const real tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1;
         /* (tube-alpha_2) angular acceleration of link 2 */
-        const real tube_alpha_2_x = tube_alpha_1_t - tube_zeta_2_x;
-        const real tube_alpha_2_y = -tube_alpha_1_t_2 - tube_zeta_2_y;
+        const real tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x;
+        const real tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz;
         /* (tube-B_2) acceleration tensor of link 2 */
-        const real tube_B_2_xy = -tube_W_2_xy - tube_qdd_1_t_8;
-        const real tube_B_2_yx = tube_qdd_1_t_8 - tube_W_2_xy;
-        const real tube_B_2_zx = tube_zeta_2_y - tube_alpha_2_y;
-        const real tube_B_2_zy = tube_alpha_2_x - tube_zeta_2_x;
+        const real tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2;
+        const real tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2;
+        const real tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
+        const real tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
         /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real tube_acc_3_x = axis_x_tube_axes2_x*tube_S_ddot_x +
-            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_r3_x;
-        const real tube_acc_3_y = tube_bias_t_4 + tube_qdd_1_t_8*tube_root_2 - tube_bias_t_2 -
-            tube_g_r3_y;
-        const real tube_acc_3_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x -
-            tube_alpha_2_y*tube_root_2;
+        const real tube_acc_3_t = m->tube_acc_3_t[i];
+        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
+        const real tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
+        const real tube_acc_3_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
+        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
+        const real tube_g_in_axes2_x = tube_acc_3_t_3*tube_s_2 + tube_acc_3_t_4*tube_c_2;
+        const real tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_t_4*tube_s_2;
+        const real tube_acc_3_in_axes2_x = axis_x_tube_axes2_x*tube_S_ddot_x +
+            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z -
+            tube_g_in_axes2_x;
+        const real tube_acc_3_in_axes2_y = tube_bias_t_4 + tube_qdd_2*tube_root_2 - tube_bias_t_2
+            - tube_g_in_axes2_y;
+        const real tube_acc_3_in_axes2_z = tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z -
+            tube_alpha_2_in_axes2_y*tube_root_2;
         /* (tube-f_3) inertia force of link 3 less its weight */
-        const real tube_h_3_x = m->tube_h_3_x[i];
-        const real tube_h_3_y = m->tube_h_3_y[i];
-        const real tube_h_3_z = m->tube_h_3_z[i];
+        const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
+        const real tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
+        const real tube_f_3_t_3 = tube_qd_2*tube_qd_2;
+        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
+        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
+        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
         const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_x = tube_acc_3_x*tube_link3_mass - tube_B_2_xy*tube_h_3_z -
-            tube_alpha_1_t_2*tube_h_3_y - tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3);
-        const real tube_f_3_y = tube_B_2_yx*tube_h_3_x + tube_acc_3_y*tube_link3_mass +
-            tube_h_3_z*(tube_W_2_t + tube_W_2_t_3) - tube_alpha_1_t*tube_h_3_y;
-        const real tube_f_3_z = tube_B_2_zx*tube_h_3_x + tube_acc_3_z*tube_link3_mass -
-            tube_B_2_zy*tube_h_3_z - tube_h_3_y*(tube_W_2_t + tube_W_2_t_2);
+        const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y + tube_h_3_in_spec2_x*(-tube_f_3_t_2 -
+            tube_f_3_t_3) - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z;
+        const real tube_f_3_in_axes2_y = tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_acc_3_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_t +
+            tube_f_3_t_3) - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y;
+        const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x +
+            tube_acc_3_in_axes2_z*tube_link3_mass - tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z -
+            tube_h_3_in_spec2_y*(tube_f_3_t + tube_f_3_t_2);
         /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real tube_J_group_2_xy = m->tube_J_group_2_xy[i];
-        const real tube_J_group_2_xz = m->tube_J_group_2_xz[i];
-        const real tube_J_group_2_yz = m->tube_J_group_2_yz[i];
-        const real tube_Sigma_2_yy = m->tube_Sigma_2_yy[i];
-        const real tube_Sigma_2_zz = m->tube_Sigma_2_zz[i];
-        const real tube_h_2_y = m->tube_h_2_y[i];
-        const real tube_h_2_z = m->tube_h_2_z[i];
-        const real tube_mu_2_x = tube_B_2_yx*tube_J_group_2_xz + tube_B_2_zy*tube_Sigma_2_yy +
-            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_t +
-            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_zx*tube_J_group_2_xy -
-            tube_acc_3_y*tube_h_3_y - tube_acc_3_z*tube_h_3_z;
-        const real tube_Sigma_2_xx = m->tube_Sigma_2_xx[i];
-        const real tube_h_2_x = m->tube_h_2_x[i];
-        const real tube_mu_2_y = tube_B_2_zy*tube_J_group_2_xy + tube_acc_3_x*tube_h_3_y +
-            tube_g_r1_x*tube_h_2_x - tube_B_2_xy*tube_J_group_2_yz - tube_B_2_zx*tube_Sigma_2_xx -
-            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_t_2 -
-            tube_acc_3_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y;
-        const real tube_mu_2_z = tube_B_2_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t -
-            tube_W_2_t_2) + tube_J_group_2_xz*tube_alpha_1_t + tube_acc_3_x*tube_h_3_z +
-            tube_acc_3_y*tube_h_3_x - tube_B_2_xy*tube_Sigma_2_yy -
-            tube_J_group_2_yz*tube_alpha_1_t_2 - tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x;
+        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
+        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
+        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
+        const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
+        const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
+        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
+        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
+        const real tube_mu_2_in_axes2_x = tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
+            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z;
+        const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
+        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
+        const real tube_mu_2_in_axes2_y = tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
+            - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_y;
+        const real tube_mu_2_in_axes2_z = tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+            tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_f_3_t_2) +
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
+            - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
         /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real tube_N_2_y = tube_mu_2_y - tube_f_3_z*tube_root_2;
-        const real tube_N_2_z = tube_mu_2_z + tube_f_3_y*tube_root_2;
+        const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2;
+        const real tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2;
         /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real tube_G_t = inv_tube_w_1_t_16*tube_N_2_z;
-        const real tube_G_t_2 = inv_tube_w_1_t_57*tube_G_t*tube_w_1_t_17;
-        const real tube_G_t_3 = inv_tube_w_1_t_95*(tube_G_t*tube_w_1_t_21 -
+        const real tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
+        const real tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17;
+        const real tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 -
             tube_G_t_2*tube_w_1_t_37);
-        const real tube_G_t_4 = inv_tube_w_1_t_129*(tube_G_t_2*tube_w_1_t_41 +
+        const real tube_G_t_4 = inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 +
             tube_G_t_3*tube_w_1_t_53 - tube_G_t*tube_w_1_t_25);
-        const real tube_G_t_5 = inv_tube_w_1_t_157*(tube_G_t_2*tube_w_1_t_45 +
-            tube_G_t_3*tube_w_1_t_58 + tube_mu_2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 -
-            tube_G_t_4*tube_w_1_t_69 - tube_N_2_y*tube_c_2);
-        const real tube_G_t_6 = tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 +
-            tube_G_t_3*tube_w_1_t_50 + tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_w_1_t_76;
-        const real tube_G_t_7 = inv_tube_w_1_t_95*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 +
-            tube_G_t_5*tube_w_1_t_77;
-        const real tube_G_t_8 = tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 +
-            tube_G_t_3*tube_w_1_t_51 + tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_w_1_t_78;
-        const real tube_G_t_9 = R(1.35)*tube_G_t_8;
-        const real tube_G_t_10 = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_w_1_t_79;
-        const real tube_G_t_11 = R(1.35)*tube_G_t_10;
-        const real tube_G_t_12 = tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 +
-            tube_G_t_3*tube_w_1_t_52 + tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_w_1_t_80;
-        const real tube_G_t_13 = R(1.35)*tube_G_t_12;
-        /* (tube-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real tube_c_in_base_x = -axis_x_tube_axes2_x*tube_f_3_x -
-            axis_y_tube_axes2_in_base_x*tube_G_t_6 - axis_z_tube_axes2_in_base_x*tube_G_t_7;
-        const real tube_c_in_base_y = -axis_x_tube_axes2_y*tube_f_3_x -
-            axis_y_tube_axes2_in_base_y*tube_G_t_6 - axis_z_tube_axes2_in_base_y*tube_G_t_7;
-        const real tube_c_in_base_z = -axis_x_tube_axes2_z*tube_f_3_x -
-            axis_y_tube_axes2_in_base_z*tube_G_t_6 - axis_z_tube_axes2_in_base_z*tube_G_t_7;
+        const real tube_G_t_5 = inv_tube_w_1_t_75*(tube_G_t_2*tube_w_1_t_45 +
+            tube_G_t_3*tube_w_1_t_58 + tube_N_2_in_axes2_y*tube_c_2 +
+            tube_mu_2_in_axes2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 - tube_G_t_4*tube_w_1_t_69);
+        const real tube_G_in_axes2_y = tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 +
+            tube_G_t_3*tube_w_1_t_50 + tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_qd_1_t;
+        const real tube_G_in_axes2_z = inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 +
+            tube_G_t_5*tube_qd_1_t_2;
+        /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
+           all freedoms */
+        const real tube_G_m1_t = tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 +
+            tube_G_t_3*tube_w_1_t_51 + tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3;
+        const real tube_G_m1 = R(1.35)*tube_G_m1_t;
+        /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
+           all freedoms */
+        const real tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4;
+        const real tube_G_m2 = -R(1.35)*tube_G_m2_t;
+        /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
+           all freedoms */
+        const real tube_G_m3_t = tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 +
+            tube_G_t_3*tube_w_1_t_52 + tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5;
+        const real tube_G_m3 = R(1.35)*tube_G_m3_t;
         /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real tube_G_m_x = tube_G_t_11*tube_end_p2_r3_y - tube_G_t_13*tube_end_p3_r1_x;
-        const real tube_G_m_y = -tube_G_t_11*tube_end_p2_r3_x - tube_G_t_9*tube_end_p1_r1_x;
-        const real tube_G_m_z = tube_G_t_13*tube_end_p3_r3_x + tube_G_t_9*tube_end_p1_r3_y;
+        const real tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y -
+            tube_G_m3*tube_end_p3_in_axes2_z;
+        const real tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y -
+            tube_G_m1*tube_end_p1_in_axes2_z;
+        const real tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z +
+            tube_G_m3*tube_n_m3_in_axes2_z;
+        /* (tube-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real tube_c_x = -axis_x_tube_axes2_x*tube_f_3_in_axes2_x -
+            axis_y_tube_axes2_x*tube_G_in_axes2_y - axis_z_tube_axes2_x*tube_G_in_axes2_z;
+        const real tube_c_y = -axis_x_tube_axes2_y*tube_f_3_in_axes2_x -
+            axis_y_tube_axes2_y*tube_G_in_axes2_y - axis_z_tube_axes2_y*tube_G_in_axes2_z;
+        const real tube_c_z = -axis_x_tube_axes2_z*tube_f_3_in_axes2_x -
+            axis_y_tube_axes2_z*tube_G_in_axes2_y - axis_z_tube_axes2_z*tube_G_in_axes2_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real tube_R_a_t = tube_c_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_G_m_x
-            - axis_y_tube_axes2_in_base_x*tube_G_m_y - axis_z_tube_axes2_in_base_x*tube_G_m_z -
-            tube_c_in_base_y*tube_q_in_base_z;
-        const real tube_R_a_t_2 = tube_c_in_base_x*tube_q_in_base_z -
-            axis_x_tube_axes2_y*tube_G_m_x - axis_y_tube_axes2_in_base_y*tube_G_m_y -
-            axis_z_tube_axes2_in_base_y*tube_G_m_z - tube_c_in_base_z*tube_q_in_base_x;
-        const real tube_R_a_t_3 = tube_c_in_base_y*tube_q_in_base_x -
-            axis_x_tube_axes2_z*tube_G_m_x - axis_y_tube_axes2_in_base_z*tube_G_m_y -
-            axis_z_tube_axes2_in_base_z*tube_G_m_z - tube_c_in_base_x*tube_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + tube_c_in_base_x : tube_c_in_base_x;  /* total_tube_x */
-        terms[1*count + k] = add ? terms[1*count + k] + tube_c_in_base_y : tube_c_in_base_y;  /* total_tube_y */
-        terms[2*count + k] = add ? terms[2*count + k] + tube_c_in_base_z : tube_c_in_base_z;  /* total_tube_z */
-        terms[3*count + k] = add ? terms[3*count + k] + tube_R_a_t : tube_R_a_t;  /* total_tube_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + tube_R_a_t_2 : tube_R_a_t_2;  /* total_tube_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + tube_R_a_t_3 : tube_R_a_t_3;  /* total_tube_z_2 */
-        o[0*count + k] = axis_y_tube_axes2_in_base_x;
-        o[1*count + k] = axis_y_tube_axes2_in_base_y;
-        o[2*count + k] = axis_y_tube_axes2_in_base_z;
+        const real tube_R_a_t = axis_x_tube_axes2_x*tube_G_m_in_axes2_x +
+            axis_y_tube_axes2_x*tube_G_m_in_axes2_y + axis_z_tube_axes2_x*tube_G_m_in_axes2_z +
+            tube_c_y*tube_q_z - tube_c_z*tube_q_y;
+        const real tube_R_a_t_2 = axis_x_tube_axes2_y*tube_G_m_in_axes2_x +
+            axis_y_tube_axes2_y*tube_G_m_in_axes2_y + axis_z_tube_axes2_y*tube_G_m_in_axes2_z +
+            tube_c_z*tube_q_x - tube_c_x*tube_q_z;
+        const real tube_R_a_t_3 = axis_x_tube_axes2_z*tube_G_m_in_axes2_x +
+            axis_y_tube_axes2_z*tube_G_m_in_axes2_y + axis_z_tube_axes2_z*tube_G_m_in_axes2_z +
+            tube_c_x*tube_q_y - tube_c_y*tube_q_x;
+        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y + axis_y_tube_axes2_z*tube_q_y +
+            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_y*tube_q_z;
+        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_x*tube_q_z + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_z*tube_q_x;
+        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_y*tube_q_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_x*tube_q_y;
+        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+        const real tube_Hk_a_2_x = axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z + axis_z_tube_axes2_z*tube_q_y -
+            axis_x_tube_axes2_x*tube_mu_c2_t - axis_z_tube_axes2_y*tube_q_z;
+        const real tube_Hk_a_2_y = axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_x*tube_q_z + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t - axis_z_tube_axes2_z*tube_q_x;
+        const real tube_Hk_a_2_z = axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_y*tube_q_x + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_z*tube_mu_c2_t - axis_z_tube_axes2_x*tube_q_y;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + tube_c_x : tube_c_x;  /* R_t_t_4 */
+        terms[1*count + k] = add ? terms[1*count + k] + tube_c_y : tube_c_y;  /* R_t_t_5 */
+        terms[2*count + k] = add ? terms[2*count + k] + tube_c_z : tube_c_z;  /* R_t_t_6 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + tube_R_a_t : tube_R_a_t;  /* R_a_tube_x */
+        terms[4*count + k] = add ? terms[4*count + k] + tube_R_a_t_2 : tube_R_a_t_2;  /* R_a_tube_y */
+        terms[5*count + k] = add ? terms[5*count + k] + tube_R_a_t_3 : tube_R_a_t_3;  /* R_a_tube_z */
+        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        o[0*count + k] = axis_y_tube_axes2_x;
+        o[1*count + k] = axis_y_tube_axes2_y;
+        o[2*count + k] = axis_y_tube_axes2_z;
+        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
-        o[6*count + k] = axis_z_tube_axes2_in_base_x;
-        o[7*count + k] = axis_z_tube_axes2_in_base_y;
-        o[8*count + k] = axis_z_tube_axes2_in_base_z;
+        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        o[6*count + k] = axis_z_tube_axes2_x;
+        o[7*count + k] = axis_z_tube_axes2_y;
+        o[8*count + k] = axis_z_tube_axes2_z;
+        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = tube_Hk_a_2_x;
         o[10*count + k] = tube_Hk_a_2_y;
         o[11*count + k] = tube_Hk_a_2_z;
-        o[12*count + k] = tube_mu_c3_in_base_x;
-        o[13*count + k] = tube_mu_c3_in_base_y;
-        o[14*count + k] = tube_mu_c3_in_base_z;
+        /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+        o[12*count + k] = tube_mu_c3_x;
+        o[13*count + k] = tube_mu_c3_y;
+        o[14*count + k] = tube_mu_c3_z;
         o[15*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -7857,34 +8122,36 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
+        const real R_t_t_4 = sums[6*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_tube_x = sums[6*w + k];
-        const real total_ups_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_tube_x - total_ups_x;
+        const real R_t_x = f_p_x - R_t_t - R_t_t_4;
+        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_t_5 = sums[7*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_tube_y = sums[7*w + k];
-        const real total_ups_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_tube_y - total_ups_y;
+        const real R_t_y = f_p_y - R_t_t_2 - R_t_t_5;
+        const real R_t_t_3 = sums[2*w + k];
+        const real R_t_t_6 = sums[8*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_tube_z = sums[8*w + k];
-        const real total_ups_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_tube_z - total_ups_z;
+        const real R_t_z = f_p_z - R_t_t_3 - R_t_t_6;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_tube_x_2 = sums[9*w + k];
-        const real total_ups_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_tube_x_2 - total_ups_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_tube_y_2 = sums[10*w + k];
-        const real total_ups_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_tube_y_2 - total_ups_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_tube_z_2 = sums[11*w + k];
-        const real total_ups_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_tube_z_2 - total_ups_z_2;
+        const real R_a_tube_x = sums[9*w + k];
+        const real R_a_ups_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_tube_x + R_a_ups_x + mu_p_x;
+        const real R_a_tube_y = sums[10*w + k];
+        const real R_a_ups_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_tube_y + R_a_ups_y + mu_p_y;
+        const real R_a_tube_z = sums[11*w + k];
+        const real R_a_ups_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_tube_z + R_a_ups_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -8017,27 +8284,29 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg,
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-q_1) displacement of joint 1 */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        /* (ups-q_1) displacement of joint 1 */
-        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
         /* (ups-q_2) displacement of joint 2 */
-        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1);
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_in_axes1_z,
+            inv_ups_root_2*ups_root_1);
+        /* (ups-q_1) displacement of joint 1 */
         o[0*count + k] = ups_q_1;
+        /* (ups-q_2) displacement of joint 2 */
         o[1*count + k] = ups_q_2;
+        /* (ups-q_3) displacement of joint 3 */
         o[2*count + k] = ups_root_2;
         o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
@@ -8105,27 +8374,29 @@ INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t leg
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-q_1) displacement of joint 1 */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_q_1 = angle(inv_tube_root_1*tube_py_1, inv_tube_root_1*tube_px_1);
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        /* (tube-q_1) displacement of joint 1 */
-        const real tube_q_1 = angle(inv_tube_root_1*tube_py_1, inv_tube_root_1*tube_px_1);
         /* (tube-q_2) displacement of joint 2 */
-        const real tube_q_2 = angle(-inv_tube_root_2*tube_xi_1_t, inv_tube_root_2*tube_root_1);
+        const real inv_tube_root_2 = 1/tube_root_2;
+        const real tube_q_2 = angle(-inv_tube_root_2*tube_xi_1_in_axes1_z,
+            inv_tube_root_2*tube_root_1);
+        /* (tube-q_1) displacement of joint 1 */
         o[0*count + k] = tube_q_1;
+        /* (tube-q_2) displacement of joint 2 */
         o[1*count + k] = tube_q_2;
+        /* (tube-q_3) displacement of joint 3 */
         o[2*count + k] = tube_root_2;
         o[4*count + k] = tube_q_1 + (tube_q_2 + tube_root_2);
         o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
@@ -8260,27 +8531,27 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -8298,60 +8569,58 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
         /* (ups-S_dot) velocity of the connection point */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
+        const real ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z;
         const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
-        const real ups_qd_2 = inv_ups_root_2*(ups_S_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z
-            - axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
-            ups_S_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
-            ups_S_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x));
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
+        const real ups_qd_2 = inv_ups_root_2*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
+            ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
+            ups_S_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y));
+        /* (ups-qd_1) rate of joint 1 */
         o[0*count + k] = ups_qd_1;
+        /* (ups-qd_2) rate of joint 2 */
         o[1*count + k] = ups_qd_2;
-        o[2*count + k] = ups_S_dot_tip_x;
-        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_tip_x);
+        /* (ups-qd_3) rate of joint 3 */
+        o[2*count + k] = ups_S_dot_in_axes2_x;
+        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
@@ -8384,27 +8653,27 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -8422,48 +8691,63 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        /* (tube-S_dot) velocity of the connection point */
+        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
+            tube_base_frame_xy*tube_s_1;
+        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
+            tube_base_frame_yy*tube_s_1;
+        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
+            tube_base_frame_zy*tube_s_1;
+        const real tube_S_dot_t = tube_s_1*tube_s_2;
+        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
+        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
+            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
+        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
+            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
+        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
+            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
+        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
+            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
+        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
+            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
+        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
+            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real t_dot_x = s[12*w + j];
+        const real tube_S_dot_x = t_dot_x + omega_y*tube_q_z - omega_z*tube_q_y;
+        const real omega_x = s[15*w + j];
+        const real t_dot_y = s[13*w + j];
+        const real tube_S_dot_y = t_dot_y + omega_z*tube_q_x - omega_x*tube_q_z;
+        const real t_dot_z = s[14*w + j];
+        const real tube_S_dot_z = t_dot_z + omega_x*tube_q_y - omega_y*tube_q_x;
+        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
+            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
+            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
+            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -8486,82 +8770,82 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r3_y = -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
-            - tube_end_p1_r0_x*tube_s_1);
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_in_axes2_z = tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx
+            + tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
+            tube_c_1*tube_n_m1_t_11);
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_y = -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
-            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz);
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
+            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz);
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r3_x = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
-            - tube_end_p3_r0_x*tube_s_1);
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_in_axes2_z = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx
+            + tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
+            tube_c_1*tube_n_m3_t_2);
+        const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_3;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        /* (tube-mu2_c3) moment along direction 2 that goes with it */
+        const real tube_mu2_c3 = 1/tube_size_c3;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*inv_tube_size_c3*tube_f_c3_t;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
+        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3_t*tube_mu2_c3;
+        const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
+        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3*tube_mu2_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -8581,10 +8865,10 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -8602,31 +8886,31 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -8638,71 +8922,56 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_157 = 1/tube_w_1_t_75;
-        /* (tube-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x;
         /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_tip_x = axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y +
-            axis_x_tube_axes2_z*omega_z;
-        const real tube_omega_tip_y = axis_y_tube_axes2_in_base_x*omega_x +
-            axis_y_tube_axes2_in_base_y*omega_y + axis_y_tube_axes2_in_base_z*omega_z;
-        const real tube_omega_tip_z = axis_z_tube_axes2_in_base_x*omega_x +
-            axis_z_tube_axes2_in_base_y*omega_y + axis_z_tube_axes2_in_base_z*omega_z;
-        const real tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_y;
+        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
+            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
+        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
+            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
+        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
         /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_x;
+        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
+            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
+        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
         /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z -
-            tube_end_p3_r1_x*tube_omega_tip_x;
-        /* (tube-S_dot) velocity of the connection point */
-        const real tube_S_dot_tip_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_tip_y = axis_y_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_dot_y + axis_y_tube_axes2_in_base_z*tube_S_dot_z;
-        const real tube_S_dot_tip_z = axis_z_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_dot_y + axis_z_tube_axes2_in_base_z*tube_S_dot_z;
+        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-qd_1) rate of joint 1 */
+        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+        const real tube_qd_1_t = R(1.35)*tube_eta_1;
+        const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
+        const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
+        const real tube_qd_1 =
+            inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
+            inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
+            inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
+            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73 +
+            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74);
+        /* (tube-qd_2) rate of joint 2 */
+        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67);
+        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
+        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
+            + tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25;
+        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
+        /* (tube-qd_1) rate of joint 1 */
+        o[0*count + k] = tube_qd_1;
+        /* (tube-qd_2) rate of joint 2 */
+        o[1*count + k] = tube_qd_2;
         /* (tube-qd_3) rate of joint 3 */
-        const real tube_qd_3_t = R(1.35)*tube_eta_1;
-        const real tube_qd_3_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_3_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_3_t_4 =
-            inv_tube_w_1_t_157*(inv_tube_w_1_t_157*tube_S_dot_tip_y*tube_w_1_t_70 +
-            inv_tube_w_1_t_157*tube_S_dot_tip_z*tube_w_1_t_71 +
-            inv_tube_w_1_t_157*tube_qd_3_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_157*tube_qd_3_t_2*tube_w_1_t_73 +
-            inv_tube_w_1_t_157*tube_qd_3_t_3*tube_w_1_t_74);
-        const real tube_qd_3_t_5 = inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 +
-            tube_S_dot_tip_z*tube_w_1_t_65 + tube_qd_3_t*tube_w_1_t_66 +
-            tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67 -
-            tube_qd_3_t_4*tube_w_1_t_69);
-        const real tube_qd_3_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z +
-            tube_S_dot_tip_y*tube_w_1_t_50 + tube_qd_3_t*tube_w_1_t_51 +
-            tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58 +
-            tube_qd_3_t_5*tube_w_1_t_53);
-        const real tube_qd_3_t_7 = tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 +
-            tube_qd_3_t_3*tube_w_1_t_16 + tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25;
-        const real tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7;
-        o[0*count + k] = tube_qd_3_t_4;
-        o[1*count + k] = tube_qd_3_t_8;
-        o[2*count + k] = tube_S_dot_tip_x;
-        o[4*count + k] = tube_qd_3_t_4 + (tube_qd_3_t_8 + tube_S_dot_tip_x);
+        o[2*count + k] = tube_S_dot_in_axes2_x;
+        o[4*count + k] = tube_qd_1 + (tube_qd_2 + tube_S_dot_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -8858,27 +9127,27 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -8896,97 +9165,97 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
         /* (ups-S_dot) velocity of the connection point */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t;
-        const real ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_omega_1_t*ups_qd_2*ups_root_2;
+        const real ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z;
+        const real ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1;
         /* (ups-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
         /* (ups-S_ddot) acceleration of the connection point */
         const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
-            ups_S_ddot_z*ups_axis_x_z + ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 +
-            ups_qd_2*ups_qd_2);
-        const real ups_rel_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z -
-            ups_bias_z;
+        const real ups_rel_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
+            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z -
+            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2);
+        const real ups_rel_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
+            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z -
+            ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
+        /* (ups-qdd_2) acceleration of joint 2 */
         const real ups_qdd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x +
             axis_y_ups_axes2_y*ups_S_ddot_y + axis_y_ups_axes2_z*ups_S_ddot_z -
-            ups_bias_t*ups_qd_2) + ups_omega_1_t*ups_omega_1_t_2;
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+            ups_bias_t*ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+        /* (ups-qdd_1) acceleration of joint 1 */
         o[0*count + k] = ups_qdd_1;
+        /* (ups-qdd_2) acceleration of joint 2 */
         o[1*count + k] = ups_qdd_2;
-        o[2*count + k] = ups_rel_x;
-        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_x);
+        /* (ups-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = ups_rel_in_axes2_x;
+        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
@@ -9019,27 +9288,27 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -9057,48 +9326,66 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        /* (tube-S_dot) velocity of the connection point */
+        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
+            tube_base_frame_xy*tube_s_1;
+        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
+            tube_base_frame_yy*tube_s_1;
+        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
+            tube_base_frame_zy*tube_s_1;
+        const real tube_S_dot_t = tube_s_1*tube_s_2;
+        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
+        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
+            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
+        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
+            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
+        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
+            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
+        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
+            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
+        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
+            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
+        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
+            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
+        const real omega_x = s[15*w + j];
+        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
+        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
+        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
+            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
+            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
+            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -9121,88 +9408,85 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1;
-        const real tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y;
-        const real tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2;
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
+        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_x = tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x;
-        const real tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1;
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1;
-        const real tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y;
-        const real tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
+        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
+        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        /* (tube-mu2_c3) moment along direction 2 that goes with it */
+        const real tube_mu2_c3 = 1/tube_size_c3;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*inv_tube_size_c3*tube_f_c3_t;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
+        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3_t*tube_mu2_c3;
+        const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
+        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3*tube_mu2_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -9222,10 +9506,10 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -9243,31 +9527,31 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -9279,184 +9563,179 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_157 = 1/tube_w_1_t_75;
-        const real tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70;
-        const real tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71;
-        const real tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72;
-        const real tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73;
-        const real tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74;
-        /* (tube-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z;
-        const real tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_3;
         /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_tip_x = axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y +
-            axis_x_tube_axes2_z*omega_z;
-        const real tube_omega_tip_y = axis_y_tube_axes2_in_base_x*omega_x +
-            axis_y_tube_axes2_in_base_y*omega_y + axis_y_tube_axes2_in_base_z*omega_z;
-        const real tube_omega_tip_z = axis_z_tube_axes2_in_base_x*omega_x +
-            axis_z_tube_axes2_in_base_y*omega_y + axis_z_tube_axes2_in_base_z*omega_z;
-        const real tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_y;
+        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
+            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
+        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
+            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
+        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
         /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_x;
+        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
+            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
+        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
         /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z -
-            tube_end_p3_r1_x*tube_omega_tip_x;
-        /* (tube-S_dot) velocity of the connection point */
-        const real tube_S_dot_tip_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_tip_y = axis_y_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_dot_y + axis_y_tube_axes2_in_base_z*tube_S_dot_z;
-        const real tube_S_dot_tip_z = axis_z_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_dot_y + axis_z_tube_axes2_in_base_z*tube_S_dot_z;
-        /* (tube-qd_3) rate of joint 3 */
-        const real tube_qd_3_t = R(1.35)*tube_eta_1;
-        const real tube_qd_3_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_3_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_3_t_4 = inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 +
-            tube_S_dot_tip_z*tube_w_1_t_77 + tube_qd_3_t*tube_w_1_t_78 +
-            tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80);
-        const real tube_qd_3_t_5 = inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 +
-            tube_S_dot_tip_z*tube_w_1_t_65 + tube_qd_3_t*tube_w_1_t_66 +
-            tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67 -
-            tube_qd_3_t_4*tube_w_1_t_69);
-        const real tube_qd_3_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z +
-            tube_S_dot_tip_y*tube_w_1_t_50 + tube_qd_3_t*tube_w_1_t_51 +
-            tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58 +
-            tube_qd_3_t_5*tube_w_1_t_53);
-        const real tube_qd_3_t_7 = tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 +
-            tube_qd_3_t_3*tube_w_1_t_16 + tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25;
-        const real tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7;
+        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-qd_1) rate of joint 1 */
+        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+        const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
+        const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
+        const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
+        const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
+        const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
+        const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
+        const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
+        const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
+        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t +
+            tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*tube_qd_1_t_6 +
+            tube_qd_1_t_4*tube_qd_1_t_7 + tube_qd_1_t_5*tube_qd_1_t_8);
+        /* (tube-qd_2) rate of joint 2 */
+        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
+            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67);
+        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 +
+            tube_qd_2_t*tube_w_1_t_53);
+        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 +
+            tube_qd_1_t_6*tube_w_1_t_15 + tube_qd_1_t_8*tube_w_1_t_16 +
+            tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25;
+        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
         /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_t = tube_qd_3_t_4*tube_s_2;
-        const real tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4;
-        /* (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8;
-        const real tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8;
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = 2*tube_S_dot_tip_x;
-        const real tube_bias_y = tube_bias_t*tube_qd_3_t_8 -
-            tube_omega_1_t*tube_omega_1_t_2*tube_root_2;
-        const real tube_bias_z = tube_bias_t*tube_omega_1_t_2 + 2*tube_root_2*tube_zeta_2_y;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_nd_m1_y = tube_end_p1_r3_x*tube_omega_1_t_2 +
-            tube_end_p1_r3_x*tube_omega_tip_y - tube_end_p1_r3_y*tube_omega_tip_x;
-        const real tube_nd_m1_z = tube_end_p1_r3_x*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_x - tube_end_p1_r3_x*tube_qd_3_t_8;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x;
-        const real tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y;
-        const real tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8;
-        const real tube_nu_1_t_4 = tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_nd_m2_x = tube_end_p2_r1_x*tube_omega_tip_x -
-            tube_end_p2_r1_x*tube_omega_1_t - tube_end_p2_r3_x*tube_omega_tip_z;
-        const real tube_nd_m2_y = tube_end_p2_r1_x*tube_omega_1_t_2 +
-            tube_end_p2_r1_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_z;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 - tube_end_p2_r3_x*tube_omega_1_t) -
-            tube_nd_m2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_nd_m3_x = tube_end_p3_r3_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_omega_1_t - tube_end_p3_r3_y*tube_omega_tip_x;
-        const real tube_nd_m3_z = tube_end_p3_r1_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_qd_3_t_8 - tube_end_p3_r3_y*tube_omega_tip_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 + tube_end_p3_r3_x*tube_omega_1_t) -
-            tube_nd_m3_z*tube_nu_1_t_3;
-        const real tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x;
+        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
+        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
+        /* (tube-W_2) centripetal tensor of link 2 */
+        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
         /* (tube-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y;
+        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z;
+        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x;
+        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x;
         /* (tube-S_ddot) acceleration of the connection point */
-        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2;
-        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3;
-        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t;
+        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
+        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
+        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
+        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+        const real tube_bias_t = 2*tube_S_dot_in_axes2_x;
+        const real tube_bias_in_axes2_y = tube_bias_t*tube_qd_2 +
+            tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_root_2;
+        const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*tube_root_2 -
+            tube_bias_t*tube_omega_1_in_axes2_y;
         /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-        const real tube_rel_x = axis_x_tube_axes2_x*tube_S_ddot_x +
-            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z +
-            tube_root_2*(tube_omega_1_t_2*tube_omega_1_t_2 + tube_qd_3_t_8*tube_qd_3_t_8);
-        const real tube_rel_y = axis_y_tube_axes2_in_base_x*tube_S_ddot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_ddot_y + axis_y_tube_axes2_in_base_z*tube_S_ddot_z
-            - tube_bias_y;
-        const real tube_rel_z = axis_z_tube_axes2_in_base_x*tube_S_ddot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_ddot_y + axis_z_tube_axes2_in_base_z*tube_S_ddot_z
-            - tube_bias_z;
+        const real tube_rel_in_axes2_x = axis_x_tube_axes2_x*tube_S_ddot_x +
+            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z -
+            tube_root_2*(-tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y - tube_qd_2*tube_qd_2);
+        const real tube_rel_in_axes2_y = axis_y_tube_axes2_x*tube_S_ddot_x +
+            axis_y_tube_axes2_y*tube_S_ddot_y + axis_y_tube_axes2_z*tube_S_ddot_z -
+            tube_bias_in_axes2_y;
+        const real tube_rel_in_axes2_z = axis_z_tube_axes2_x*tube_S_ddot_x +
+            axis_z_tube_axes2_y*tube_S_ddot_y + axis_z_tube_axes2_z*tube_S_ddot_z -
+            tube_bias_in_axes2_z;
+        /* (tube-nd_m1) rate of moment direction 1 */
+        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
+        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
+        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
+        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
+        /* (tube-nd_m2) rate of moment direction 2 */
+        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
+        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
+        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
+        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
+            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
+        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
+        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
+        /* (tube-nd_m3) rate of moment direction 3 */
+        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
+        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
+        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
+        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
+        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
         /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real tube_alpha_tip_x = alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y +
-            alpha_z*axis_x_tube_axes2_z;
-        const real tube_alpha_tip_y = alpha_x*axis_y_tube_axes2_in_base_x +
-            alpha_y*axis_y_tube_axes2_in_base_y + alpha_z*axis_y_tube_axes2_in_base_z;
-        const real tube_alpha_tip_z = alpha_x*axis_z_tube_axes2_in_base_x +
-            alpha_y*axis_z_tube_axes2_in_base_y + alpha_z*axis_z_tube_axes2_in_base_z;
-        const real tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x -
-            tube_alpha_tip_z*tube_end_p1_r3_y;
+        const real tube_alpha_in_axes2_y = alpha_x*axis_y_tube_axes2_x +
+            alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z;
+        const real tube_alpha_in_axes2_z = alpha_x*axis_z_tube_axes2_x +
+            alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z;
+        const real tube_etad_1_t = tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z -
+            tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z;
         const real tube_etad_1 = tube_nu_1 - tube_etad_1_t;
         /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y -
-            tube_alpha_tip_y*tube_end_p2_r3_x;
+        const real tube_alpha_in_axes2_x = alpha_x*axis_x_tube_axes2_x +
+            alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z;
+        const real tube_etad_2_t = tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y;
         const real tube_etad_2 = tube_nu_2 - tube_etad_2_t;
         /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-        const real tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x -
-            tube_alpha_tip_z*tube_end_p3_r3_x;
+        const real tube_etad_3_t = tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z -
+            tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z;
         const real tube_etad_3 = tube_nu_3 - tube_etad_3_t;
         /* (tube-qdd_1) acceleration of joint 1 */
         const real tube_qdd_1_t = R(1.35)*tube_etad_1;
         const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
         const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-        const real tube_qdd_1_t_4 = inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 +
-            tube_qdd_1_t_2*tube_w_1_t_79 + tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76
-            + tube_rel_z*tube_w_1_t_77);
-        const real tube_qdd_1_t_5 = inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 -
-            tube_qdd_1_t_2*tube_w_1_t_67 - tube_qdd_1_t_4*tube_w_1_t_69);
-        const real tube_qdd_1_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z +
-            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
-            tube_qdd_1_t_4*tube_w_1_t_58 + tube_qdd_1_t_5*tube_w_1_t_53 +
-            tube_rel_y*tube_w_1_t_50);
-        const real tube_qdd_1_t_7 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
-            tube_qdd_1_t_6*tube_w_1_t_21 + tube_rel_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35 +
-            tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
-            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
-            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
-            tube_qdd_1_t_5*tube_w_1_t_25;
-        const real tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7;
-        o[0*count + k] = tube_qdd_1_t_4;
-        o[1*count + k] = tube_qdd_1_t_8;
-        o[2*count + k] = tube_rel_x;
-        o[4*count + k] = tube_qdd_1_t_4 + (tube_qdd_1_t_8 + tube_rel_x);
+        const real tube_qdd_1 = inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
+            tube_qd_1_t_2*tube_rel_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_t +
+            tube_qd_1_t_4*tube_qdd_1_t_2 + tube_qd_1_t_5*tube_qdd_1_t_3);
+        /* (tube-qdd_2) acceleration of joint 2 */
+        const real tube_qdd_2_t = inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 +
+            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69 -
+            tube_qdd_1_t_2*tube_w_1_t_67);
+        const real tube_qdd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z +
+            tube_qdd_1*tube_w_1_t_58 + tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
+            tube_qdd_2_t*tube_w_1_t_53 + tube_rel_in_axes2_y*tube_w_1_t_50);
+        const real tube_qdd_2_t_3 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
+            tube_qdd_2_t_2*tube_w_1_t_21 + tube_rel_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
+            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
+            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25;
+        const real tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3;
+        /* (tube-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = tube_qdd_1;
+        /* (tube-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = tube_qdd_2;
+        /* (tube-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = tube_rel_in_axes2_x;
+        o[4*count + k] = tube_qdd_1 + (tube_qdd_2 + tube_rel_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -9609,27 +9888,27 @@ INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t leg, size_
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -9652,79 +9931,81 @@ INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1;
-        const real tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y;
-        const real tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2;
+        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
+        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
+        const real tube_n_m1_in_axes1_z = -tube_c_2*(tube_c_1*tube_n_m1_t_10 +
+            tube_n_m1_t_11*tube_s_1);
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_x = tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1;
+        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*(tube_n_m2_t_3*tube_s_2 -
+            tube_c_2*tube_n_m2_t_4) - tube_s_2*(tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2);
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1;
-        const real tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y;
-        const real tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*(tube_end_p1_r0_y*tube_s_1 -
-            tube_c_1*tube_end_p1_r0_x);
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*(tube_end_p2_r0_z*tube_s_2 -
-            tube_c_2*tube_end_p2_r1_y) - tube_s_2*(-tube_c_2*tube_end_p2_r0_z -
-            tube_end_p2_r1_y*tube_s_2);
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_s_2*(tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x);
+        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
+        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
+        const real tube_n_m3_t_5 = tube_s_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1);
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        /* (tube-mu2_c3) moment along direction 2 that goes with it */
+        const real tube_mu2_c3 = 1/tube_size_c3;
         /* (tube-phi_c1) distance by which the leg misses the platform, along a direction left out */
-        const real tube_phi_c1 = inv_tube_f_c1_t_26*tube_end_p1_r3_x*tube_n_m3_t*tube_root_2 -
-            inv_tube_f_c1_t_26*tube_end_p3_r3_y*tube_n_m1_t_10*tube_root_2;
+        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
+        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
+        const real tube_phi_c1 = inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_root_2
+            - inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_root_2;
         /* (tube-phi_c2) distance by which the leg misses the platform, along a direction left out */
-        const real tube_phi_c2 = inv_tube_f_c1_t_26*tube_end_p1_r3_x*tube_end_p3_r3_x*tube_root_1
-            + inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_end_p3_r3_y*tube_root_1;
+        const real tube_phi_c2 =
+            inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
+            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1;
         /* (tube-phi_c3) angle by which the leg misses the platform, about a direction left out */
-        const real tube_phi_c3 = inv_tube_size_c3*tube_end_p1_r3_x*tube_f_c3_t +
-            inv_tube_size_c3*tube_end_p3_r3_y*tube_f_c3_t_2 -
-            inv_tube_size_c3*(tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x);
+        const real tube_phi_c3 = tube_end_p1_in_axes2_x*tube_m1_c3_t*tube_mu2_c3 +
+            tube_end_p3_in_axes2_y*tube_m3_c3*tube_mu2_c3 - tube_mu2_c3*(tube_c_1*tube_n_m2_t +
+            tube_n_m2_t_2*tube_s_1);
+        /* (tube-phi_c1) distance by which the leg misses the platform, along a direction left out */
         o[0*count + k] = tube_phi_c1;
+        /* (tube-phi_c2) distance by which the leg misses the platform, along a direction left out */
         o[1*count + k] = tube_phi_c2;
+        /* (tube-phi_c3) angle by which the leg misses the platform, about a direction left out */
         o[2*count + k] = tube_phi_c3;
         o[4*count + k] = tube_phi_c1 + (tube_phi_c2 + tube_phi_c3);
         o[3*count + k] = UNLESS(magnitude(tube_rho2_1) >
@@ -9872,27 +10153,27 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -9910,176 +10191,185 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
         /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
         /* (ups-S_ddot) acceleration of the connection point */
         const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x;
-        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
-        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
-        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z;
+        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
+            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
-            ups_S_ddot_z*ups_axis_x_z - ups_g_r3_x;
-        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
-        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
         /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
-        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
-        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
-        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        const real ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x;
+        const real ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
+        const real ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
+        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
+        const real ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2;
+        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
+            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x;
+        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
-            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
-            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
-            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_mu_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
+            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_mu_2_t_2) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
-            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
+        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_mu_2_t_3);
+        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         const real ups_link3_mass = m->ups_link3_mass[i];
-        const real ups_c_true_x = ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y +
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) - ups_acc_3_x*ups_link3_mass;
-        const real ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass;
-        const real ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass;
-        const real ups_c_true_in_base_x = axis_y_ups_axes2_x*ups_c_true_y +
-            axis_z_ups_axes2_in_base_x*ups_c_true_z + ups_axis_x_x*ups_c_true_x;
-        const real ups_c_true_in_base_y = axis_y_ups_axes2_y*ups_c_true_y +
-            axis_z_ups_axes2_in_base_y*ups_c_true_z + ups_axis_x_y*ups_c_true_x;
-        const real ups_c_true_in_base_z = axis_y_ups_axes2_z*ups_c_true_y +
-            axis_z_ups_axes2_in_base_z*ups_c_true_z + ups_axis_x_z*ups_c_true_x;
-        o[0*count + k] = ups_c_true_in_base_x;
-        o[1*count + k] = ups_c_true_in_base_y;
-        o[2*count + k] = ups_c_true_in_base_z;
-        o[3*count + k] = ups_axis_x_x;
-        o[4*count + k] = ups_axis_x_y;
-        o[5*count + k] = ups_axis_x_z;
+        const real ups_c_true_in_axes2_x = ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
+            ups_acc_3_in_axes2_x*ups_link3_mass - ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_h_3_in_spec2_x*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass;
+        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass;
+        const real ups_c_true_x = axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_x*ups_c_true_in_axes2_y + axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
+        const real ups_c_true_y = axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_y*ups_c_true_in_axes2_y + axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
+        const real ups_c_true_z = axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_z*ups_c_true_in_axes2_y + axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
+        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = ups_c_true_x;
+        o[1*count + k] = ups_c_true_y;
+        o[2*count + k] = ups_c_true_z;
+        /* (ups-w_3) reciprocal vector 3 */
+        o[3*count + k] = axis_x_ups_axes2_x;
+        o[4*count + k] = axis_x_ups_axes2_y;
+        o[5*count + k] = axis_x_ups_axes2_z;
         o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
@@ -10114,27 +10404,27 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -10152,48 +10442,66 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        /* (tube-S_dot) velocity of the connection point */
+        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
+            tube_base_frame_xy*tube_s_1;
+        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
+            tube_base_frame_yy*tube_s_1;
+        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
+            tube_base_frame_zy*tube_s_1;
+        const real tube_S_dot_t = tube_s_1*tube_s_2;
+        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
+        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
+            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
+        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
+            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
+        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
+            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
+        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
+            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
+        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
+            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
+        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
+            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
+        const real omega_x = s[15*w + j];
+        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
+        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
+        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
+            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
+            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
+            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -10216,96 +10524,131 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1;
-        const real tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y;
-        const real tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2;
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
+        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_x = tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x;
-        const real tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1;
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1;
-        const real tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y;
-        const real tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
+        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
+        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        const real tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        /* (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2 */
-        const real tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
+        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        /* (tube-mu_c1) the moment that goes with it */
+        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
+        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
+        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
+            tube_m3_c1_t*tube_n_m3_in_axes2_z;
+        const real tube_mu_c1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z;
+        const real tube_mu_c1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z;
+        const real tube_mu_c1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
+            axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z;
+        /* (tube-mu_c2) the moment that goes with it */
+        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
+        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
+        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
+            tube_m1_c2_t*tube_n_m1_in_axes2_z;
+        const real tube_mu_c2_x = axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_x*tube_mu_c2_t;
+        const real tube_mu_c2_y = axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_y*tube_mu_c2_t;
+        const real tube_mu_c2_z = axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_z*tube_mu_c2_t;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
         /* (tube-mu1_c3) moment along direction 1 that goes with it */
         const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t;
+        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
         /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
+        /* (tube-mu_c3) the moment that goes with it */
+        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
+            tube_end_p3_in_axes2_z*tube_mu3_c3;
+        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
+            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
+        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
+            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
+        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
+        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
+        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+            axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*tube_f_c1_t_4;
-        const real tube_w_1_t_7 = R(1.35)*tube_f_c1_t_5;
-        const real tube_w_1_t_8 = R(1.35)*tube_f_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_f_c2_t_2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
+        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
+        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
+        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
+        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
         const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
         const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -10325,10 +10668,10 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -10346,31 +10689,31 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -10382,346 +10725,331 @@ INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_157 = 1/tube_w_1_t_75;
-        const real tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70;
-        const real tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71;
-        const real tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72;
-        const real tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73;
-        const real tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74;
-        /* (tube-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z;
-        const real tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_3;
         /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_tip_x = axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y +
-            axis_x_tube_axes2_z*omega_z;
-        const real tube_omega_tip_y = axis_y_tube_axes2_in_base_x*omega_x +
-            axis_y_tube_axes2_in_base_y*omega_y + axis_y_tube_axes2_in_base_z*omega_z;
-        const real tube_omega_tip_z = axis_z_tube_axes2_in_base_x*omega_x +
-            axis_z_tube_axes2_in_base_y*omega_y + axis_z_tube_axes2_in_base_z*omega_z;
-        const real tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_y;
+        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
+            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
+        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
+            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
+        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
         /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_x;
+        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
+            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
+        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
         /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z -
-            tube_end_p3_r1_x*tube_omega_tip_x;
-        /* (tube-S_dot) velocity of the connection point */
-        const real tube_S_dot_tip_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_tip_y = axis_y_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_dot_y + axis_y_tube_axes2_in_base_z*tube_S_dot_z;
-        const real tube_S_dot_tip_z = axis_z_tube_axes2_in_base_x*tube_S_dot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_dot_y + axis_z_tube_axes2_in_base_z*tube_S_dot_z;
-        /* (tube-qd_3) rate of joint 3 */
-        const real tube_qd_3_t = R(1.35)*tube_eta_1;
-        const real tube_qd_3_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_3_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_3_t_4 = inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 +
-            tube_S_dot_tip_z*tube_w_1_t_77 + tube_qd_3_t*tube_w_1_t_78 +
-            tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80);
-        const real tube_qd_3_t_5 = inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 +
-            tube_S_dot_tip_z*tube_w_1_t_65 + tube_qd_3_t*tube_w_1_t_66 +
-            tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67 -
-            tube_qd_3_t_4*tube_w_1_t_69);
-        const real tube_qd_3_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z +
-            tube_S_dot_tip_y*tube_w_1_t_50 + tube_qd_3_t*tube_w_1_t_51 +
-            tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58 +
-            tube_qd_3_t_5*tube_w_1_t_53);
-        const real tube_qd_3_t_7 = tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 +
-            tube_qd_3_t_3*tube_w_1_t_16 + tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25;
-        const real tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7;
+        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-qd_1) rate of joint 1 */
+        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+        const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
+        const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
+        const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
+        const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
+        const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
+        const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
+        const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
+        const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
+        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t +
+            tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*tube_qd_1_t_6 +
+            tube_qd_1_t_4*tube_qd_1_t_7 + tube_qd_1_t_5*tube_qd_1_t_8);
+        /* (tube-qd_2) rate of joint 2 */
+        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
+            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67);
+        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 +
+            tube_qd_2_t*tube_w_1_t_53);
+        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 +
+            tube_qd_1_t_6*tube_w_1_t_15 + tube_qd_1_t_8*tube_w_1_t_16 +
+            tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25;
+        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
         /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_t = tube_qd_3_t_4*tube_s_2;
-        const real tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4;
-        /* (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8;
-        const real tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8;
+        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
+        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
         /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_t = tube_omega_1_t*tube_omega_1_t;
-        const real tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2;
-        const real tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8;
-        const real tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2;
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_root_2*tube_zeta_2_y;
-        const real tube_bias_t_2 = tube_W_2_xy*tube_root_2;
-        const real tube_bias_t_3 = 2*tube_S_dot_tip_x;
-        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8;
-        const real tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2;
-        const real tube_bias_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_z = 2*tube_bias_t + tube_bias_t_5;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_nd_m1_y = tube_end_p1_r3_x*tube_omega_1_t_2 +
-            tube_end_p1_r3_x*tube_omega_tip_y - tube_end_p1_r3_y*tube_omega_tip_x;
-        const real tube_nd_m1_z = tube_end_p1_r3_x*tube_omega_tip_z -
-            tube_end_p1_r1_x*tube_omega_tip_x - tube_end_p1_r3_x*tube_qd_3_t_8;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x;
-        const real tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y;
-        const real tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8;
-        const real tube_nu_1_t_4 = tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_nd_m2_x = tube_end_p2_r1_x*tube_omega_tip_x -
-            tube_end_p2_r1_x*tube_omega_1_t - tube_end_p2_r3_x*tube_omega_tip_z;
-        const real tube_nd_m2_y = tube_end_p2_r1_x*tube_omega_1_t_2 +
-            tube_end_p2_r1_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_z;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 - tube_end_p2_r3_x*tube_omega_1_t) -
-            tube_nd_m2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_nd_m3_x = tube_end_p3_r3_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_omega_1_t - tube_end_p3_r3_y*tube_omega_tip_x;
-        const real tube_nd_m3_z = tube_end_p3_r1_x*tube_omega_tip_y +
-            tube_end_p3_r3_y*tube_qd_3_t_8 - tube_end_p3_r3_y*tube_omega_tip_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 + tube_end_p3_r3_x*tube_omega_1_t) -
-            tube_nd_m3_z*tube_nu_1_t_3;
-        const real tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x;
-        /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real tube_g_r0_x = m->tube_g_r0_x[i];
-        const real tube_g_r0_y = m->tube_g_r0_y[i];
-        const real tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x;
-        const real tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1;
-        const real tube_g_r0_z = m->tube_g_r0_z[i];
-        const real tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y;
-        const real tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2;
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4;
-        const real tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5;
-        const real tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 -
-            tube_end_p3_r3_x*tube_f_c1_t_5;
-        const real tube_mu_c1_in_base_x = axis_x_tube_axes2_x*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_mu_c1_t + axis_z_tube_axes2_in_base_x*tube_mu_c1_z;
-        const real tube_mu_c1_in_base_y = axis_x_tube_axes2_y*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z;
-        const real tube_mu_c1_in_base_z = axis_x_tube_axes2_z*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t;
-        const real tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2;
-        const real tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t;
-        const real tube_mu_c2_in_base_x = axis_y_tube_axes2_in_base_x*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_mu_c2_z - axis_x_tube_axes2_x*tube_mu_c2_t_2;
-        const real tube_mu_c2_in_base_y = axis_y_tube_axes2_in_base_y*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2;
-        const real tube_mu_c2_in_base_z = axis_y_tube_axes2_in_base_z*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y -
-            tube_end_p3_r1_x*tube_mu3_c3;
-        const real tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x +
-            tube_end_p1_r1_x*tube_mu1_c3;
-        const real tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3;
-        const real tube_mu_c3_in_base_x = axis_x_tube_axes2_x*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_x*tube_mu_c3_y + axis_z_tube_axes2_in_base_x*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_y = axis_x_tube_axes2_y*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_y*tube_mu_c3_y + axis_z_tube_axes2_in_base_y*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_z = axis_x_tube_axes2_z*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c3_y + axis_z_tube_axes2_in_base_z*tube_mu_c3_z;
+        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
+        const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
         /* (tube-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y;
+        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z;
+        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x;
+        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x;
         /* (tube-S_ddot) acceleration of the connection point */
-        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2;
-        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3;
-        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t;
+        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
+        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
+        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
+        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+        const real tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2;
+        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2;
+        const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
+        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_2;
+        const real tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y;
+        const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
+        const real tube_bias_in_axes2_z = 2*tube_bias_t + tube_bias_t_5;
         /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-        const real tube_rel_y = axis_y_tube_axes2_in_base_x*tube_S_ddot_x +
-            axis_y_tube_axes2_in_base_y*tube_S_ddot_y + axis_y_tube_axes2_in_base_z*tube_S_ddot_z
-            - tube_bias_y;
-        const real tube_rel_z = axis_z_tube_axes2_in_base_x*tube_S_ddot_x +
-            axis_z_tube_axes2_in_base_y*tube_S_ddot_y + axis_z_tube_axes2_in_base_z*tube_S_ddot_z
-            - tube_bias_z;
+        const real tube_rel_in_axes2_y = axis_y_tube_axes2_x*tube_S_ddot_x +
+            axis_y_tube_axes2_y*tube_S_ddot_y + axis_y_tube_axes2_z*tube_S_ddot_z -
+            tube_bias_in_axes2_y;
+        const real tube_rel_in_axes2_z = axis_z_tube_axes2_x*tube_S_ddot_x +
+            axis_z_tube_axes2_y*tube_S_ddot_y + axis_z_tube_axes2_z*tube_S_ddot_z -
+            tube_bias_in_axes2_z;
+        /* (tube-nd_m1) rate of moment direction 1 */
+        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
+        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
+            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
+        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
+        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
+        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
+        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
+        /* (tube-nd_m2) rate of moment direction 2 */
+        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
+        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
+        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
+        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
+            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
+        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
+        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
+        /* (tube-nd_m3) rate of moment direction 3 */
+        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
+        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
+        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
+            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
+        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
+        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
         /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real tube_alpha_tip_x = alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y +
-            alpha_z*axis_x_tube_axes2_z;
-        const real tube_alpha_tip_y = alpha_x*axis_y_tube_axes2_in_base_x +
-            alpha_y*axis_y_tube_axes2_in_base_y + alpha_z*axis_y_tube_axes2_in_base_z;
-        const real tube_alpha_tip_z = alpha_x*axis_z_tube_axes2_in_base_x +
-            alpha_y*axis_z_tube_axes2_in_base_y + alpha_z*axis_z_tube_axes2_in_base_z;
-        const real tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x -
-            tube_alpha_tip_z*tube_end_p1_r3_y;
+        const real tube_alpha_in_axes2_y = alpha_x*axis_y_tube_axes2_x +
+            alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z;
+        const real tube_alpha_in_axes2_z = alpha_x*axis_z_tube_axes2_x +
+            alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z;
+        const real tube_etad_1_t = tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z -
+            tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z;
         const real tube_etad_1 = tube_nu_1 - tube_etad_1_t;
         /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y -
-            tube_alpha_tip_y*tube_end_p2_r3_x;
+        const real tube_alpha_in_axes2_x = alpha_x*axis_x_tube_axes2_x +
+            alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z;
+        const real tube_etad_2_t = tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y;
         const real tube_etad_2 = tube_nu_2 - tube_etad_2_t;
         /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-        const real tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x -
-            tube_alpha_tip_z*tube_end_p3_r3_x;
+        const real tube_etad_3_t = tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z -
+            tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z;
         const real tube_etad_3 = tube_nu_3 - tube_etad_3_t;
         /* (tube-qdd_1) acceleration of joint 1 */
         const real tube_qdd_1_t = R(1.35)*tube_etad_1;
         const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
         const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-        const real tube_qdd_1_t_4 = inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 +
-            tube_qdd_1_t_2*tube_w_1_t_79 + tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76
-            + tube_rel_z*tube_w_1_t_77);
-        const real tube_qdd_1_t_5 = inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 -
-            tube_qdd_1_t_2*tube_w_1_t_67 - tube_qdd_1_t_4*tube_w_1_t_69);
-        const real tube_qdd_1_t_6 = inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z +
-            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
-            tube_qdd_1_t_4*tube_w_1_t_58 + tube_qdd_1_t_5*tube_w_1_t_53 +
-            tube_rel_y*tube_w_1_t_50);
-        const real tube_qdd_1_t_7 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
-            tube_qdd_1_t_6*tube_w_1_t_21 + tube_rel_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35 +
-            tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
-            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
-            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
-            tube_qdd_1_t_5*tube_w_1_t_25;
-        const real tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7;
+        const real tube_qdd_1 = inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
+            tube_qd_1_t_2*tube_rel_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_t +
+            tube_qd_1_t_4*tube_qdd_1_t_2 + tube_qd_1_t_5*tube_qdd_1_t_3);
+        /* (tube-qdd_2) acceleration of joint 2 */
+        const real tube_qdd_2_t = inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 +
+            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69 -
+            tube_qdd_1_t_2*tube_w_1_t_67);
+        const real tube_qdd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z +
+            tube_qdd_1*tube_w_1_t_58 + tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
+            tube_qdd_2_t*tube_w_1_t_53 + tube_rel_in_axes2_y*tube_w_1_t_50);
+        const real tube_qdd_2_t_3 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
+            tube_qdd_2_t_2*tube_w_1_t_21 + tube_rel_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
+            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
+            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25;
+        const real tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3;
         /* (tube-alpha_1) angular acceleration of link 1 */
-        const real tube_alpha_1_t = tube_qdd_1_t_4*tube_s_2;
-        const real tube_alpha_1_t_2 = tube_c_2*tube_qdd_1_t_4;
+        const real tube_alpha_1_in_axes2_x = tube_qdd_1*tube_s_2;
+        const real tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1;
         /* (tube-alpha_2) angular acceleration of link 2 */
-        const real tube_alpha_2_x = tube_alpha_1_t - tube_zeta_2_x;
-        const real tube_alpha_2_y = -tube_alpha_1_t_2 - tube_zeta_2_y;
+        const real tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x;
+        const real tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz;
         /* (tube-B_2) acceleration tensor of link 2 */
-        const real tube_B_2_xy = -tube_W_2_xy - tube_qdd_1_t_8;
-        const real tube_B_2_yx = tube_qdd_1_t_8 - tube_W_2_xy;
-        const real tube_B_2_zx = tube_zeta_2_y - tube_alpha_2_y;
-        const real tube_B_2_zy = tube_alpha_2_x - tube_zeta_2_x;
+        const real tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2;
+        const real tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2;
+        const real tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
+        const real tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
         /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real tube_acc_3_x = axis_x_tube_axes2_x*tube_S_ddot_x +
-            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_r3_x;
-        const real tube_acc_3_y = tube_bias_t_4 + tube_qdd_1_t_8*tube_root_2 - tube_bias_t_2 -
-            tube_g_r3_y;
-        const real tube_acc_3_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x -
-            tube_alpha_2_y*tube_root_2;
+        const real tube_acc_3_t = m->tube_acc_3_t[i];
+        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
+        const real tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
+        const real tube_acc_3_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
+        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
+        const real tube_g_in_axes2_x = tube_acc_3_t_3*tube_s_2 + tube_acc_3_t_4*tube_c_2;
+        const real tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_t_4*tube_s_2;
+        const real tube_acc_3_in_axes2_x = axis_x_tube_axes2_x*tube_S_ddot_x +
+            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z -
+            tube_g_in_axes2_x;
+        const real tube_acc_3_in_axes2_y = tube_bias_t_4 + tube_qdd_2*tube_root_2 - tube_bias_t_2
+            - tube_g_in_axes2_y;
+        const real tube_acc_3_in_axes2_z = tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z -
+            tube_alpha_2_in_axes2_y*tube_root_2;
         /* (tube-f_3) inertia force of link 3 less its weight */
-        const real tube_h_3_x = m->tube_h_3_x[i];
-        const real tube_h_3_y = m->tube_h_3_y[i];
-        const real tube_h_3_z = m->tube_h_3_z[i];
+        const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
+        const real tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
+        const real tube_f_3_t_3 = tube_qd_2*tube_qd_2;
+        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
+        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
+        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
         const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_x = tube_acc_3_x*tube_link3_mass - tube_B_2_xy*tube_h_3_z -
-            tube_alpha_1_t_2*tube_h_3_y - tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3);
-        const real tube_f_3_y = tube_B_2_yx*tube_h_3_x + tube_acc_3_y*tube_link3_mass +
-            tube_h_3_z*(tube_W_2_t + tube_W_2_t_3) - tube_alpha_1_t*tube_h_3_y;
-        const real tube_f_3_z = tube_B_2_zx*tube_h_3_x + tube_acc_3_z*tube_link3_mass -
-            tube_B_2_zy*tube_h_3_z - tube_h_3_y*(tube_W_2_t + tube_W_2_t_2);
+        const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y + tube_h_3_in_spec2_x*(-tube_f_3_t_2 -
+            tube_f_3_t_3) - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z;
+        const real tube_f_3_in_axes2_y = tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_acc_3_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_t +
+            tube_f_3_t_3) - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y;
+        const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x +
+            tube_acc_3_in_axes2_z*tube_link3_mass - tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z -
+            tube_h_3_in_spec2_y*(tube_f_3_t + tube_f_3_t_2);
         /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real tube_J_group_2_xy = m->tube_J_group_2_xy[i];
-        const real tube_J_group_2_xz = m->tube_J_group_2_xz[i];
-        const real tube_J_group_2_yz = m->tube_J_group_2_yz[i];
-        const real tube_Sigma_2_yy = m->tube_Sigma_2_yy[i];
-        const real tube_Sigma_2_zz = m->tube_Sigma_2_zz[i];
-        const real tube_h_2_y = m->tube_h_2_y[i];
-        const real tube_h_2_z = m->tube_h_2_z[i];
-        const real tube_mu_2_x = tube_B_2_yx*tube_J_group_2_xz + tube_B_2_zy*tube_Sigma_2_yy +
-            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_t +
-            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_zx*tube_J_group_2_xy -
-            tube_acc_3_y*tube_h_3_y - tube_acc_3_z*tube_h_3_z;
-        const real tube_Sigma_2_xx = m->tube_Sigma_2_xx[i];
-        const real tube_h_2_x = m->tube_h_2_x[i];
-        const real tube_mu_2_y = tube_B_2_zy*tube_J_group_2_xy + tube_acc_3_x*tube_h_3_y +
-            tube_g_r1_x*tube_h_2_x - tube_B_2_xy*tube_J_group_2_yz - tube_B_2_zx*tube_Sigma_2_xx -
-            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_t_2 -
-            tube_acc_3_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y;
-        const real tube_mu_2_z = tube_B_2_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t -
-            tube_W_2_t_2) + tube_J_group_2_xz*tube_alpha_1_t + tube_acc_3_x*tube_h_3_z +
-            tube_acc_3_y*tube_h_3_x - tube_B_2_xy*tube_Sigma_2_yy -
-            tube_J_group_2_yz*tube_alpha_1_t_2 - tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x;
+        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
+        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
+        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
+        const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
+        const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
+        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
+        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
+        const real tube_mu_2_in_axes2_x = tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
+            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z;
+        const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
+        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
+        const real tube_mu_2_in_axes2_y = tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
+            - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_y;
+        const real tube_mu_2_in_axes2_z = tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+            tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_f_3_t_2) +
+            tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
+            - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
         /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real tube_N_2_y = tube_mu_2_y - tube_f_3_z*tube_root_2;
-        const real tube_N_2_z = tube_mu_2_z + tube_f_3_y*tube_root_2;
+        const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2;
+        const real tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2;
         /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real tube_G_t = inv_tube_w_1_t_16*tube_N_2_z;
-        const real tube_G_t_2 = inv_tube_w_1_t_57*tube_G_t*tube_w_1_t_17;
-        const real tube_G_t_3 = inv_tube_w_1_t_95*(tube_G_t*tube_w_1_t_21 -
+        const real tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
+        const real tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17;
+        const real tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 -
             tube_G_t_2*tube_w_1_t_37);
-        const real tube_G_t_4 = inv_tube_w_1_t_129*(tube_G_t_2*tube_w_1_t_41 +
+        const real tube_G_t_4 = inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 +
             tube_G_t_3*tube_w_1_t_53 - tube_G_t*tube_w_1_t_25);
-        const real tube_G_t_5 = inv_tube_w_1_t_157*(tube_G_t_2*tube_w_1_t_45 +
-            tube_G_t_3*tube_w_1_t_58 + tube_mu_2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 -
-            tube_G_t_4*tube_w_1_t_69 - tube_N_2_y*tube_c_2);
-        const real tube_G_t_6 = tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 +
-            tube_G_t_3*tube_w_1_t_50 + tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_w_1_t_76;
-        const real tube_G_t_7 = inv_tube_w_1_t_95*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 +
-            tube_G_t_5*tube_w_1_t_77;
-        const real tube_G_t_8 = tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 +
-            tube_G_t_3*tube_w_1_t_51 + tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_w_1_t_78;
-        const real tube_G_t_9 = R(1.35)*tube_G_t_8;
-        const real tube_G_t_10 = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_w_1_t_79;
-        const real tube_G_t_11 = R(1.35)*tube_G_t_10;
-        const real tube_G_t_12 = tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 +
-            tube_G_t_3*tube_w_1_t_52 + tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_w_1_t_80;
-        const real tube_G_t_13 = R(1.35)*tube_G_t_12;
-        /* (tube-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real tube_c_in_base_x = -axis_x_tube_axes2_x*tube_f_3_x -
-            axis_y_tube_axes2_in_base_x*tube_G_t_6 - axis_z_tube_axes2_in_base_x*tube_G_t_7;
-        const real tube_c_in_base_y = -axis_x_tube_axes2_y*tube_f_3_x -
-            axis_y_tube_axes2_in_base_y*tube_G_t_6 - axis_z_tube_axes2_in_base_y*tube_G_t_7;
-        const real tube_c_in_base_z = -axis_x_tube_axes2_z*tube_f_3_x -
-            axis_y_tube_axes2_in_base_z*tube_G_t_6 - axis_z_tube_axes2_in_base_z*tube_G_t_7;
+        const real tube_G_t_5 = inv_tube_w_1_t_75*(tube_G_t_2*tube_w_1_t_45 +
+            tube_G_t_3*tube_w_1_t_58 + tube_N_2_in_axes2_y*tube_c_2 +
+            tube_mu_2_in_axes2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 - tube_G_t_4*tube_w_1_t_69);
+        const real tube_G_in_axes2_y = tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 +
+            tube_G_t_3*tube_w_1_t_50 + tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_qd_1_t;
+        const real tube_G_in_axes2_z = inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 +
+            tube_G_t_5*tube_qd_1_t_2;
+        /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
+           all freedoms */
+        const real tube_G_m1_t = tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 +
+            tube_G_t_3*tube_w_1_t_51 + tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3;
+        const real tube_G_m1 = R(1.35)*tube_G_m1_t;
+        /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
+           all freedoms */
+        const real tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4;
+        const real tube_G_m2 = -R(1.35)*tube_G_m2_t;
+        /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
+           all freedoms */
+        const real tube_G_m3_t = tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 +
+            tube_G_t_3*tube_w_1_t_52 + tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5;
+        const real tube_G_m3 = R(1.35)*tube_G_m3_t;
         /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real tube_G_m_x = tube_G_t_11*tube_end_p2_r3_y - tube_G_t_13*tube_end_p3_r1_x;
-        const real tube_G_m_y = -tube_G_t_11*tube_end_p2_r3_x - tube_G_t_9*tube_end_p1_r1_x;
-        const real tube_G_m_z = tube_G_t_13*tube_end_p3_r3_x + tube_G_t_9*tube_end_p1_r3_y;
+        const real tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y -
+            tube_G_m3*tube_end_p3_in_axes2_z;
+        const real tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y -
+            tube_G_m1*tube_end_p1_in_axes2_z;
+        const real tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z +
+            tube_G_m3*tube_n_m3_in_axes2_z;
+        /* (tube-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real tube_c_x = -axis_x_tube_axes2_x*tube_f_3_in_axes2_x -
+            axis_y_tube_axes2_x*tube_G_in_axes2_y - axis_z_tube_axes2_x*tube_G_in_axes2_z;
+        const real tube_c_y = -axis_x_tube_axes2_y*tube_f_3_in_axes2_x -
+            axis_y_tube_axes2_y*tube_G_in_axes2_y - axis_z_tube_axes2_y*tube_G_in_axes2_z;
+        const real tube_c_z = -axis_x_tube_axes2_z*tube_f_3_in_axes2_x -
+            axis_y_tube_axes2_z*tube_G_in_axes2_y - axis_z_tube_axes2_z*tube_G_in_axes2_z;
         /* (tube-c_m) moment of the leg on the platform without actuation */
-        const real tube_c_m_in_base_x = -axis_x_tube_axes2_x*tube_G_m_x -
-            axis_y_tube_axes2_in_base_x*tube_G_m_y - axis_z_tube_axes2_in_base_x*tube_G_m_z;
-        const real tube_c_m_in_base_y = -axis_x_tube_axes2_y*tube_G_m_x -
-            axis_y_tube_axes2_in_base_y*tube_G_m_y - axis_z_tube_axes2_in_base_y*tube_G_m_z;
-        const real tube_c_m_in_base_z = -axis_x_tube_axes2_z*tube_G_m_x -
-            axis_y_tube_axes2_in_base_z*tube_G_m_y - axis_z_tube_axes2_in_base_z*tube_G_m_z;
-        o[0*count + k] = tube_c_in_base_x;
-        o[1*count + k] = tube_c_in_base_y;
-        o[2*count + k] = tube_c_in_base_z;
-        o[3*count + k] = tube_c_m_in_base_x;
-        o[4*count + k] = tube_c_m_in_base_y;
-        o[5*count + k] = tube_c_m_in_base_z;
-        o[6*count + k] = axis_y_tube_axes2_in_base_x;
-        o[7*count + k] = axis_y_tube_axes2_in_base_y;
-        o[8*count + k] = axis_y_tube_axes2_in_base_z;
-        o[9*count + k] = tube_mu_c1_in_base_x;
-        o[10*count + k] = tube_mu_c1_in_base_y;
-        o[11*count + k] = tube_mu_c1_in_base_z;
-        o[12*count + k] = axis_z_tube_axes2_in_base_x;
-        o[13*count + k] = axis_z_tube_axes2_in_base_y;
-        o[14*count + k] = axis_z_tube_axes2_in_base_z;
-        o[15*count + k] = tube_mu_c2_in_base_x;
-        o[16*count + k] = tube_mu_c2_in_base_y;
-        o[17*count + k] = tube_mu_c2_in_base_z;
-        o[18*count + k] = tube_mu_c3_in_base_x;
-        o[19*count + k] = tube_mu_c3_in_base_y;
-        o[20*count + k] = tube_mu_c3_in_base_z;
+        const real tube_c_m_x = -axis_x_tube_axes2_x*tube_G_m_in_axes2_x -
+            axis_y_tube_axes2_x*tube_G_m_in_axes2_y - axis_z_tube_axes2_x*tube_G_m_in_axes2_z;
+        const real tube_c_m_y = -axis_x_tube_axes2_y*tube_G_m_in_axes2_x -
+            axis_y_tube_axes2_y*tube_G_m_in_axes2_y - axis_z_tube_axes2_y*tube_G_m_in_axes2_z;
+        const real tube_c_m_z = -axis_x_tube_axes2_z*tube_G_m_in_axes2_x -
+            axis_y_tube_axes2_z*tube_G_m_in_axes2_y - axis_z_tube_axes2_z*tube_G_m_in_axes2_z;
+        /* (tube-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        o[0*count + k] = tube_c_x;
+        o[1*count + k] = tube_c_y;
+        o[2*count + k] = tube_c_z;
+        /* (tube-c_m) moment of the leg on the platform without actuation */
+        o[3*count + k] = tube_c_m_x;
+        o[4*count + k] = tube_c_m_y;
+        o[5*count + k] = tube_c_m_z;
+        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        o[6*count + k] = axis_y_tube_axes2_x;
+        o[7*count + k] = axis_y_tube_axes2_y;
+        o[8*count + k] = axis_y_tube_axes2_z;
+        /* (tube-mu_c1) the moment that goes with it */
+        o[9*count + k] = tube_mu_c1_x;
+        o[10*count + k] = tube_mu_c1_y;
+        o[11*count + k] = tube_mu_c1_z;
+        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        o[12*count + k] = axis_z_tube_axes2_x;
+        o[13*count + k] = axis_z_tube_axes2_y;
+        o[14*count + k] = axis_z_tube_axes2_z;
+        /* (tube-mu_c2) the moment that goes with it */
+        o[15*count + k] = tube_mu_c2_x;
+        o[16*count + k] = tube_mu_c2_y;
+        o[17*count + k] = tube_mu_c2_z;
+        /* (tube-mu_c3) the moment that goes with it */
+        o[18*count + k] = tube_mu_c3_x;
+        o[19*count + k] = tube_mu_c3_y;
+        o[20*count + k] = tube_mu_c3_z;
         o[21*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -10819,13 +11147,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -10891,52 +11221,53 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (potential) potential energy */
-        const real ups_b_r0_x = m->ups_b_r0_x[i];
-        const real ups_b_r0_y = m->ups_b_r0_y[i];
-        const real ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1;
-        const real ups_b_r0_z = m->ups_b_r0_z[i];
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_potential_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_potential_t = m->ups_potential_t[i];
+        const real ups_potential_t_2 = m->ups_potential_t_2[i];
+        const real ups_potential_t_5 = ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
         const real ups_link2_mass = m->ups_link2_mass[i];
-        const real ups_potential_t = (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y +
-            ups_h_3_y + ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) +
-            (ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x +
-            ups_link2_mass*(ups_b_r0_z*ups_s_2 - ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z -
-            ups_g_r1_y*ups_s_2)*(ups_h_2_z + ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 -
-            ups_b_r1_y*ups_s_2));
-        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t : ups_potential_t;  /* total_ups */
+        const real ups_potential_t_3 = m->ups_potential_t_3[i];
+        const real ups_potential_t_6 = (ups_acc_3_t_3*ups_c_2 -
+            ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(ups_c_2*ups_potential_t_3 - ups_potential_t_5*ups_s_2)) -
+            (ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
+            + ups_link2_mass*(ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1)) -
+            (ups_acc_3_t_3*ups_s_2 + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
+            ups_potential_t_3*ups_s_2));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t_6 : ups_potential_t_6;  /* potential_ups */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849));
     }
@@ -10997,56 +11328,58 @@ INLINE void potential_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real tube_g_r0_x = m->tube_g_r0_x[i];
-        const real tube_g_r0_y = m->tube_g_r0_y[i];
-        const real tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
         /* (potential) potential energy */
-        const real tube_b_r0_x = m->tube_b_r0_x[i];
-        const real tube_b_r0_y = m->tube_b_r0_y[i];
-        const real tube_b_r1_x = tube_b_r0_y*tube_s_1 - tube_b_r0_x*tube_c_1;
-        const real tube_b_r1_y = -tube_b_r0_x*tube_s_1 - tube_b_r0_y*tube_c_1;
-        const real tube_b_r0_z = m->tube_b_r0_z[i];
-        const real tube_b_r3_x = tube_b_r0_z*tube_s_2 - tube_b_r1_y*tube_c_2;
-        const real tube_b_r3_y = -tube_b_r0_z*tube_c_2 - tube_b_r1_y*tube_s_2;
-        const real tube_g_r0_z = m->tube_g_r0_z[i];
-        const real tube_h_2_x = m->tube_h_2_x[i];
-        const real tube_h_2_y = m->tube_h_2_y[i];
-        const real tube_h_2_z = m->tube_h_2_z[i];
-        const real tube_h_3_x = m->tube_h_3_x[i];
-        const real tube_h_3_y = m->tube_h_3_y[i];
-        const real tube_h_3_z = m->tube_h_3_z[i];
+        const real tube_acc_3_t = m->tube_acc_3_t[i];
+        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
+        const real tube_potential_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
+        const real tube_potential_t = m->tube_potential_t[i];
+        const real tube_potential_t_2 = m->tube_potential_t_2[i];
+        const real tube_b_in_spec2_y = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1;
+        const real tube_potential_t_5 = tube_c_1*tube_potential_t_2 - tube_potential_t*tube_s_1;
+        const real tube_potential_t_3 = m->tube_potential_t_3[i];
+        const real tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 + tube_potential_t_3*tube_s_2;
+        const real tube_b_in_spec2_z = tube_potential_t_5*tube_s_2 - tube_c_2*tube_potential_t_3;
+        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
+        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
+        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
+        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
+        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
+        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
+        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
         const real tube_link2_mass = m->tube_link2_mass[i];
         const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_potential_t = (tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x)*(tube_h_2_y +
-            tube_h_3_y + tube_b_r1_x*tube_link2_mass + tube_b_r1_x*tube_link3_mass) +
-            (tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y)*(tube_h_2_x + tube_h_3_x +
-            tube_b_r3_x*tube_link2_mass + tube_link3_mass*(tube_b_r3_x + tube_root_2)) -
-            (-tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2)*(tube_h_2_z + tube_h_3_z -
-            tube_b_r3_y*tube_link2_mass - tube_b_r3_y*tube_link3_mass);
-        terms[0*count + k] = add ? terms[0*count + k] + tube_potential_t : tube_potential_t;  /* total_tube */
+        const real tube_potential_t_6 = (tube_acc_3_t_3*tube_c_2 -
+            tube_potential_t_4*tube_s_2)*(tube_h_2_in_spec2_z + tube_h_3_in_spec2_z +
+            tube_b_in_spec2_z*tube_link2_mass + tube_b_in_spec2_z*tube_link3_mass) -
+            (tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1)*(tube_h_2_in_spec2_y +
+            tube_h_3_in_spec2_y + tube_b_in_spec2_y*tube_link2_mass +
+            tube_b_in_spec2_y*tube_link3_mass) - (tube_acc_3_t_3*tube_s_2 +
+            tube_c_2*tube_potential_t_4)*(tube_h_2_in_spec2_x + tube_h_3_in_spec2_x +
+            tube_b_in_spec2_x*tube_link2_mass + tube_link3_mass*(tube_b_in_spec2_x +
+            tube_root_2));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + tube_potential_t_6 : tube_potential_t_6;  /* potential_tube */
         o[0*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002));
@@ -11065,9 +11398,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_tube = sums[1*w + k];
-        const real total_ups = sums[0*w + k];
-        const real potential_ = -potential_t - total_tube - total_ups;
+        const real potential_tube = sums[1*w + k];
+        const real potential_ups = sums[0*w + k];
+        const real potential_ = potential_tube + potential_ups - potential_t;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -11144,6 +11478,7 @@ INLINE void condition_before(size_t w, const real *X, real *s, real *lengths, ve
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         lengths[1*w + k] = R(1.3764070284330867);
         t->total[k] += 0;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
@@ -11163,27 +11498,27 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -11205,55 +11540,57 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
-        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
-        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real ups_spread_t = b_c_x - ups_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real ups_spread_t_2 = b_c_y - ups_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real ups_spread_t_3 = b_c_z - ups_platform_point_z;
-        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
-            ups_spread_t_3*ups_spread_t_3;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_pivot_size = magnitude(ups_rho2_1);
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_pivot_size_3 = magnitude(ups_root_1);
-        const real ups_pivot_size_4 = magnitude(ups_root_2);
+        /* (ups-w_2) reciprocal vector 2 */
+        const real ups_w_2_in_axes2_y = 1/ups_root_2;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real ups_pivot_size = magnitude(ups_rho2_1);
+        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
+        const real ups_pivot_size_3 = magnitude(ups_root_1);
+        const real ups_pivot_size_4 = magnitude(ups_root_2);
         const real ups_least_pivots =
             lesser(lesser(lesser(R(0.7231023985306559)*root(ups_pivot_size),
             R(0.7231023985306559)*root(ups_pivot_size_2)),
             R(0.7231023985306559)*ups_pivot_size_3), R(0.7231023985306559)*ups_pivot_size_4);
-        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* total_ups */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+        const real ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y;
+        const real ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z;
+        const real ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real ups_spread_t = b_c_in_platform_x - ups_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z;
+        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
+            ups_spread_t_3*ups_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* spread_ups */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = ups_w_3_x;
+        o[1*count + k] = ups_w_3_y;
+        o[2*count + k] = ups_w_3_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
+        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[6*count + k] = ups_least_pivots;
-        o[8*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + ((ups_H_a_3_x +
-            ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+        o[8*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + ((ups_H_a_3_x + ups_H_a_3_y) +
+            (ups_H_a_3_z + ups_least_pivots));
         o[7*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(1.9124953849)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(1.38293)) + UNLESS(magnitude(ups_root_2) >
@@ -11290,27 +11627,27 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_in_base_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real tube_q_in_base_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real tube_q_in_base_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z;
         const real t_x = s[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x;
+        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
         const real t_y = s[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y;
+        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
         const real t_z = s[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z;
+        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
         /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
@@ -11328,48 +11665,27 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         /* (tube-root_1) amplitude, with the sign of the branch */
         const real tube_branch_1 = m->tube_branch_1[i];
         const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_px_1;
         /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_t = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
-            tube_S_z*tube_base_frame_zz;
+        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
+            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
         /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t;
+        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
         /* (tube-root_2) amplitude, with the sign of the branch */
         const real tube_branch_2 = m->tube_branch_2[i];
         const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = inv_tube_root_2*tube_root_1;
+        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
         /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_t;
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 -
-            tube_base_frame_xx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 -
-            tube_base_frame_yx*tube_c_1;
-        const real axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 -
-            tube_base_frame_zx*tube_c_1;
-        const real tube_f_c1_t = tube_s_1*tube_s_2;
-        const real tube_f_c1_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_in_base_x = tube_base_frame_xx*tube_f_c1_t +
-            tube_base_frame_xy*tube_f_c1_t_2 - tube_base_frame_xz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_y = tube_base_frame_yx*tube_f_c1_t +
-            tube_base_frame_yy*tube_f_c1_t_2 - tube_base_frame_yz*tube_c_2;
-        const real axis_y_tube_axes2_in_base_z = tube_base_frame_zx*tube_f_c1_t +
-            tube_base_frame_zy*tube_f_c1_t_2 - tube_base_frame_zz*tube_c_2;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x;
+        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
         const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
             R_zx*tube_base_frame_zx;
@@ -11392,90 +11708,132 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_end_p1_r0_x = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x;
-        const real tube_end_p1_r3_y = -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
-            - tube_end_p1_r0_x*tube_s_1);
+        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_in_axes2_z = tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx
+            + tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
+            tube_c_1*tube_n_m1_t_11);
+        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_end_p2_r0_z = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_end_p2_r1_y = -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
-            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        const real tube_n_m2_t_2 = tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz);
-        const real tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y;
-        const real tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2;
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
+            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz);
+        const real tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2;
+        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2;
+        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_s_2;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_end_p3_r0_x = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r0_y = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x;
-        const real tube_end_p3_r3_x = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
-            - tube_end_p3_r0_x*tube_s_1);
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_n_m3_t = tube_end_p3_r1_x*tube_s_2;
+        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_in_axes2_z = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx
+            + tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
+            tube_c_1*tube_n_m3_t_2);
+        const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
         /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10;
-        const real inv_tube_f_c1_t_26 = 1/tube_f_c1_t_3;
-        const real tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2;
-        const real tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2;
-        /* (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2 */
-        const real tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1;
-        const real tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1;
-        /* (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3 */
-        const real tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y;
-        const real tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y;
+        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+            tube_n_m1_in_axes2_z*tube_n_m3_t_3;
+        /* (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1 */
+        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
+        /* (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1 */
+        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        /* (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        /* (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2 */
+        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        /* (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        /* (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3 */
+        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        const real tube_n_c1_t = tube_s_1*tube_s_2;
+        const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
+        const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
+            tube_base_frame_xy*tube_n_c1_t_2;
+        const real tube_n_c1_y = tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
+            tube_base_frame_yy*tube_n_c1_t_2;
+        const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
+            tube_base_frame_zy*tube_n_c1_t_2;
+        /* (tube-mu_c1) the moment that goes with it */
+        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
+        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
+        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
+            tube_m3_c1_t*tube_n_m3_in_axes2_z;
+        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
+        const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
+        const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
+        /* (tube-mu_c2) the moment that goes with it */
+        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
+        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
+        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
+            tube_m1_c2_t*tube_n_m1_in_axes2_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2);
+        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
         /* (tube-mu1_c3) moment along direction 1 that goes with it */
         const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t;
+        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
         /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2;
+        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
+        /* (tube-mu_c3) the moment that goes with it */
+        const real axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y;
+        const real axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z;
+        const real axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x;
+        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
+            tube_end_p3_in_axes2_z*tube_mu3_c3;
+        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
+            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
+        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
+            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
+        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+            tube_mu_c3_in_axes2_y*tube_n_c1_x + tube_mu_c3_in_axes2_z*tube_n_c2_x;
+        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+            tube_mu_c3_in_axes2_y*tube_n_c1_y + tube_mu_c3_in_axes2_z*tube_n_c2_y;
+        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+            tube_mu_c3_in_axes2_y*tube_n_c1_z + tube_mu_c3_in_axes2_z*tube_n_c2_z;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_t_10;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_r0_y;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t;
-        const real tube_w_1_t_4 = R(1.35)*tube_end_p1_r3_y;
-        const real tube_w_1_t_5 = R(1.35)*tube_end_p3_r3_x;
-        const real tube_w_1_t_6 = R(1.35)*tube_f_c1_t_4;
-        const real tube_w_1_t_7 = R(1.35)*tube_f_c1_t_5;
-        const real tube_w_1_t_8 = R(1.35)*tube_f_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_f_c2_t_2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
+        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
+        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
+        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
+        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
+        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
+        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
         const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
         const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
         const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_16 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5;
+        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
             tube_w_1_t_14;
         const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
@@ -11495,10 +11853,10 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_57 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20;
+        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
         const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
             tube_w_1_t_24*tube_w_1_t_36;
         const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
@@ -11516,31 +11874,31 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
         const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
             tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_95 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40;
+        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
         const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
             tube_w_1_t_43*tube_w_1_t_51;
         const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53;
+        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_95*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58;
+        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
             + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_129 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57;
+        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
         const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
             tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
             tube_w_1_t_2*tube_w_1_t_67;
@@ -11552,72 +11910,10 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4;
-        const real tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5;
-        const real tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 -
-            tube_end_p3_r3_x*tube_f_c1_t_5;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_z;
-        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_x;
-        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_t_2 +
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_y;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t;
-        const real tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2;
-        const real tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = axis_y_tube_axes2_in_base_x*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_z;
-        const real tube_Hk_a_2_y = axis_y_tube_axes2_in_base_y*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_x;
-        const real tube_Hk_a_2_z = axis_y_tube_axes2_in_base_z*tube_mu_c2_t +
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_y;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y -
-            tube_end_p3_r1_x*tube_mu3_c3;
-        const real tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x +
-            tube_end_p1_r1_x*tube_mu1_c3;
-        const real tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3;
-        const real tube_mu_c3_in_base_x = axis_x_tube_axes2_x*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_x*tube_mu_c3_y + axis_z_tube_axes2_in_base_x*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_y = axis_x_tube_axes2_y*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_y*tube_mu_c3_y + axis_z_tube_axes2_in_base_y*tube_mu_c3_z;
-        const real tube_mu_c3_in_base_z = axis_x_tube_axes2_z*tube_mu_c3_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c3_y + axis_z_tube_axes2_in_base_z*tube_mu_c3_z;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real tube_spread_t = b_c_x - tube_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real tube_spread_t_2 = b_c_y - tube_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real tube_spread_t_3 = b_c_z - tube_platform_point_z;
-        const real tube_spread_t_4 = tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2
-            + tube_spread_t_3*tube_spread_t_3;
-        /* (tube-rho2_1) squared amplitude */
         const real tube_pivot_size = magnitude(tube_rho2_1);
-        /* (tube-rho2_2) squared amplitude */
         const real tube_pivot_size_2 = magnitude(tube_rho2_2);
-        /* (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1 */
-        const real tube_pivot_size_3 = magnitude(tube_f_c1_t_3);
-        /* (tube-size_c3) size of the moment */
+        const real tube_pivot_size_3 = magnitude(tube_f_c1_t);
         const real tube_pivot_size_4 = magnitude(tube_size_c3);
-        /* (tube-w_1) force part of reciprocal wrench 1 */
         const real tube_pivot_size_5 = magnitude(tube_w_1_t_13);
         const real tube_pivot_size_6 = magnitude(tube_w_1_t_33);
         const real tube_pivot_size_7 = magnitude(tube_w_1_t_49);
@@ -11629,32 +11925,66 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
             tube_pivot_size_4), R(0.7407407407407407)*tube_pivot_size_5), tube_pivot_size_6),
             tube_pivot_size_7), R(0.7407407407407407)*tube_pivot_size_8),
             R(0.7407407407407407)*tube_pivot_size_9);
-        terms[0*count + k] = add ? terms[0*count + k] + tube_spread_t_4 : tube_spread_t_4;  /* total_tube */
-        o[0*count + k] = axis_y_tube_axes2_in_base_x;
-        o[1*count + k] = axis_y_tube_axes2_in_base_y;
-        o[2*count + k] = axis_y_tube_axes2_in_base_z;
+        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
+            tube_mu_c1_in_axes2_y*tube_n_c1_x + tube_mu_c1_in_axes2_z*tube_n_c2_x +
+            tube_n_c1_z*tube_q_y - tube_n_c1_y*tube_q_z;
+        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
+            tube_mu_c1_in_axes2_y*tube_n_c1_y + tube_mu_c1_in_axes2_z*tube_n_c2_y +
+            tube_n_c1_x*tube_q_z - tube_n_c1_z*tube_q_x;
+        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
+            tube_mu_c1_in_axes2_y*tube_n_c1_z + tube_mu_c1_in_axes2_z*tube_n_c2_z +
+            tube_n_c1_y*tube_q_x - tube_n_c1_x*tube_q_y;
+        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+        const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*tube_n_c1_x +
+            tube_mu_c2_in_axes2_z*tube_n_c2_x + tube_n_c2_z*tube_q_y -
+            axis_x_tube_axes2_x*tube_mu_c2_t - tube_n_c2_y*tube_q_z;
+        const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*tube_n_c1_y +
+            tube_mu_c2_in_axes2_z*tube_n_c2_y + tube_n_c2_x*tube_q_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t - tube_n_c2_z*tube_q_x;
+        const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*tube_n_c1_z +
+            tube_mu_c2_in_axes2_z*tube_n_c2_z + tube_n_c2_y*tube_q_x -
+            axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real tube_spread_t = b_c_in_platform_x - tube_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real tube_spread_t_2 = b_c_in_platform_y - tube_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real tube_spread_t_3 = b_c_in_platform_z - tube_platform_point_z;
+        const real tube_spread_t_4 = tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2
+            + tube_spread_t_3*tube_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + tube_spread_t_4 : tube_spread_t_4;  /* spread_tube */
+        /* (tube-n_c1) unit force that the leg's freedoms leave out */
+        o[0*count + k] = tube_n_c1_x;
+        o[1*count + k] = tube_n_c1_y;
+        o[2*count + k] = tube_n_c1_z;
+        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
-        o[6*count + k] = axis_z_tube_axes2_in_base_x;
-        o[7*count + k] = axis_z_tube_axes2_in_base_y;
-        o[8*count + k] = axis_z_tube_axes2_in_base_z;
+        /* (tube-n_c2) unit force that the leg's freedoms leave out */
+        o[6*count + k] = tube_n_c2_x;
+        o[7*count + k] = tube_n_c2_y;
+        o[8*count + k] = tube_n_c2_z;
+        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = tube_Hk_a_2_x;
         o[10*count + k] = tube_Hk_a_2_y;
         o[11*count + k] = tube_Hk_a_2_z;
-        o[12*count + k] = tube_mu_c3_in_base_x;
-        o[13*count + k] = tube_mu_c3_in_base_y;
-        o[14*count + k] = tube_mu_c3_in_base_z;
+        /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
+        o[12*count + k] = tube_mu_c3_x;
+        o[13*count + k] = tube_mu_c3_y;
+        o[14*count + k] = tube_mu_c3_z;
+        /* (tube-w_1) force part of reciprocal wrench 1 */
         o[15*count + k] = tube_least_pivots;
-        o[17*count + k] = (((axis_y_tube_axes2_in_base_x + axis_y_tube_axes2_in_base_y) +
-            (axis_y_tube_axes2_in_base_z + tube_Hk_a_1_x)) + ((tube_Hk_a_1_y + tube_Hk_a_1_z) +
-            (axis_z_tube_axes2_in_base_x + axis_z_tube_axes2_in_base_y))) +
-            (((axis_z_tube_axes2_in_base_z + tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) +
-            ((tube_mu_c3_in_base_x + tube_mu_c3_in_base_y) + (tube_mu_c3_in_base_z +
-            tube_least_pivots)));
+        o[17*count + k] = (((tube_n_c1_x + tube_n_c1_y) + (tube_n_c1_z + tube_Hk_a_1_x)) +
+            ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (tube_n_c2_x + tube_n_c2_y))) + (((tube_n_c2_z +
+            tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_mu_c3_x + tube_mu_c3_y) +
+            (tube_mu_c3_z + tube_least_pivots)));
         o[16*count + k] = UNLESS(magnitude(tube_rho2_1) >
             TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_rho2_2) >
-            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t_3) >
+            TOLERANCE*TOLERANCE*R(1.8225000000000002)) + UNLESS(magnitude(tube_f_c1_t) >
             TOLERANCE*1) + UNLESS(magnitude(tube_size_c3) > TOLERANCE*1) +
             UNLESS(magnitude(tube_w_1_t_13) > TOLERANCE*R(1.35)) + UNLESS(magnitude(tube_w_1_t_33)
             > TOLERANCE*1) + UNLESS(magnitude(tube_w_1_t_49) > TOLERANCE*1) +
@@ -11692,9 +12022,10 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
-        const real total_tube = sums[1*w + k];
-        const real total_ups = sums[0*w + k];
-        const real spread_ = root(R(0.2)*total_tube + R(0.2)*total_ups);
+        const real spread_tube = sums[1*w + k];
+        const real spread_ups = sums[0*w + k];
+        const real spread_ = root(R(0.2)*spread_tube + R(0.2)*spread_ups);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

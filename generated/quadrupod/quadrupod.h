@@ -115,35 +115,42 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 4 legs of type ups */
-    quadrupod_real ups_J_group_2_xx[4], ups_J_group_2_xy[4], ups_J_group_2_xz[4], ups_J_group_2_yy[4],
-            ups_J_group_2_yz[4], ups_J_group_2_zz[4], ups_Sigma_2_xx[4], ups_Sigma_2_yy[4],
-            ups_Sigma_2_zz[4], ups_b_r0_x[4], ups_b_r0_y[4], ups_b_r0_z[4], ups_base_frame_xx[4],
-            ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4], ups_base_frame_yy[4],
-            ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4], ups_base_frame_zz[4],
-            ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4], ups_branch_1[4],
-            ups_branch_2[4], ups_g_r0_x[4], ups_g_r0_y[4], ups_g_r0_z[4], ups_h_2_x[4], ups_h_2_y[4],
-            ups_h_2_z[4], ups_h_3_x[4], ups_h_3_y[4], ups_h_3_z[4], ups_link2_mass[4],
-            ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
-            ups_platform_point_z[4];
+    quadrupod_real ups_J_group_2_in_axes2_xx[4], ups_J_group_2_in_axes2_xy[4],
+            ups_J_group_2_in_axes2_xz[4], ups_J_group_2_in_axes2_yy[4], ups_J_group_2_in_axes2_yz[4],
+            ups_J_group_2_in_axes2_zz[4], ups_Sigma_2_in_axes2_xx[4], ups_Sigma_2_in_axes2_yy[4],
+            ups_Sigma_2_in_axes2_zz[4], ups_acc_3_t[4], ups_acc_3_t_2[4], ups_acc_3_t_3[4],
+            ups_base_frame_xx[4], ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4],
+            ups_base_frame_yy[4], ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4],
+            ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
+            ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
+            ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
+            ups_h_3_in_spec2_z[4], ups_link2_mass[4], ups_link3_mass[4], ups_platform_point_x[4],
+            ups_platform_point_y[4], ups_platform_point_z[4], ups_potential_t[4],
+            ups_potential_t_2[4], ups_potential_t_3[4];
     /* 1 legs of type tube */
-    quadrupod_real tube_J_group_2_xx[1], tube_J_group_2_xy[1], tube_J_group_2_xz[1],
-            tube_J_group_2_yy[1], tube_J_group_2_yz[1], tube_J_group_2_zz[1], tube_Sigma_2_xx[1],
-            tube_Sigma_2_yy[1], tube_Sigma_2_zz[1], tube_b_r0_x[1], tube_b_r0_y[1], tube_b_r0_z[1],
-            tube_base_frame_xx[1], tube_base_frame_xy[1], tube_base_frame_xz[1],
-            tube_base_frame_yx[1], tube_base_frame_yy[1], tube_base_frame_yz[1],
-            tube_base_frame_zx[1], tube_base_frame_zy[1], tube_base_frame_zz[1], tube_base_point_x[1],
-            tube_base_point_y[1], tube_base_point_z[1], tube_branch_1[1], tube_branch_2[1],
-            tube_g_r0_x[1], tube_g_r0_y[1], tube_g_r0_z[1], tube_h_2_x[1], tube_h_2_y[1],
-            tube_h_2_z[1], tube_h_3_x[1], tube_h_3_y[1], tube_h_3_z[1], tube_link2_mass[1],
-            tube_link3_mass[1], tube_platform_joint_rotation_xx[1],
-            tube_platform_joint_rotation_xy[1], tube_platform_joint_rotation_xz[1],
-            tube_platform_joint_rotation_yx[1], tube_platform_joint_rotation_yy[1],
-            tube_platform_joint_rotation_yz[1], tube_platform_joint_rotation_zx[1],
-            tube_platform_joint_rotation_zy[1], tube_platform_joint_rotation_zz[1],
-            tube_platform_point_x[1], tube_platform_point_y[1], tube_platform_point_z[1];
-    quadrupod_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, m_star;
+    quadrupod_real tube_J_group_2_in_axes2_xx[1], tube_J_group_2_in_axes2_xy[1],
+            tube_J_group_2_in_axes2_xz[1], tube_J_group_2_in_axes2_yy[1],
+            tube_J_group_2_in_axes2_yz[1], tube_J_group_2_in_axes2_zz[1], tube_Sigma_2_in_axes2_xx[1],
+            tube_Sigma_2_in_axes2_yy[1], tube_Sigma_2_in_axes2_zz[1], tube_acc_3_t[1],
+            tube_acc_3_t_2[1], tube_acc_3_t_3[1], tube_base_frame_xx[1], tube_base_frame_xy[1],
+            tube_base_frame_xz[1], tube_base_frame_yx[1], tube_base_frame_yy[1],
+            tube_base_frame_yz[1], tube_base_frame_zx[1], tube_base_frame_zy[1],
+            tube_base_frame_zz[1], tube_base_point_x[1], tube_base_point_y[1], tube_base_point_z[1],
+            tube_branch_1[1], tube_branch_2[1], tube_h_2_in_spec2_x[1], tube_h_2_in_spec2_y[1],
+            tube_h_2_in_spec2_z[1], tube_h_3_in_spec2_x[1], tube_h_3_in_spec2_y[1],
+            tube_h_3_in_spec2_z[1], tube_link2_mass[1], tube_link3_mass[1],
+            tube_platform_joint_rotation_xx[1], tube_platform_joint_rotation_xy[1],
+            tube_platform_joint_rotation_xz[1], tube_platform_joint_rotation_yx[1],
+            tube_platform_joint_rotation_yy[1], tube_platform_joint_rotation_yz[1],
+            tube_platform_joint_rotation_zx[1], tube_platform_joint_rotation_zy[1],
+            tube_platform_joint_rotation_zz[1], tube_platform_point_x[1], tube_platform_point_y[1],
+            tube_platform_point_z[1], tube_potential_t[1], tube_potential_t_2[1],
+            tube_potential_t_3[1];
+    quadrupod_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, m_star;
 } quadrupod_model;
 
 extern const quadrupod_params quadrupod_default_params;

@@ -536,22 +536,22 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rrr_leg1 = 0;
-    real total_rrr_leg1_x = 0;
-    real total_rrr_leg1_y = 0;
-    real total_rrr_leg1_xx = 0;
-    real total_rrr_leg1_zz = 0;
-    real total_rrr_leg1_x_2 = 0;
-    real total_rrr_leg1_y_2 = 0;
-    real total_rrr_leg1_2 = 0;
-    real total_rrr = 0;
-    real total_rrr_x = 0;
-    real total_rrr_y = 0;
-    real total_rrr_xx = 0;
-    real total_rrr_zz = 0;
-    real total_rrr_x_2 = 0;
-    real total_rrr_y_2 = 0;
-    real total_rrr_2 = 0;
+    real m_star_rrr_leg1 = 0;
+    real h_star_rrr_leg1_in_platform_x = 0;
+    real h_star_rrr_leg1_in_platform_y = 0;
+    real J_star_rrr_leg1_in_platform_xx = 0;
+    real J_star_rrr_leg1_in_platform_zz = 0;
+    real b_c_rrr_leg1_in_platform_x = 0;
+    real b_c_rrr_leg1_in_platform_y = 0;
+    real legs_size_rrr_leg1 = 0;
+    real m_star_rrr = 0;
+    real h_star_rrr_in_platform_x = 0;
+    real h_star_rrr_in_platform_y = 0;
+    real J_star_rrr_in_platform_xx = 0;
+    real J_star_rrr_in_platform_zz = 0;
+    real b_c_rrr_in_platform_x = 0;
+    real b_c_rrr_in_platform_y = 0;
+    real legs_size_rrr = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -590,56 +590,71 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real rrr_leg1_link2_inertia_zz = params->rrr_leg1_link2_inertia[own][2][2];
         static const signed char signs_rrr_leg1_branch_1[] = {1};
         const real rrr_leg1_branch_1 = signs_rrr_leg1_branch_1[own];
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_joint2_offset_x*rrr_leg1_joint2_offset_x;
-        const real rrr_leg1_Kd_1_t_2 = R(0.5)*rrr_leg1_Kd_1_t;
-        const real rrr_leg1_Kd_1_t_3 =
-            rrr_leg1_platform_joint_offset_x*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_Kd_1_t_4 = R(0.5)*rrr_leg1_Kd_1_t_3;
         /* (rrr_leg1-size) length of the leg's lever arms, the measure of what is near singular */
-        const real rrr_leg1_size_t = R(4.58151643161e-07) + rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_3;
-        const real rrr_leg1_size = root(rrr_leg1_size_t);
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1_t = rrr_leg1_size*rrr_leg1_size*rrr_leg1_size_t;
-        /* (rrr_leg1-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rrr_leg1_Kd_1_t_5 = 1/rrr_leg1_Kd_1_t;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = 1/rrr_leg1_Kd_1_t_3;
-        /* (rrr_leg1-rho_tip_2) connection point to the centre of mass of link 2 */
-        const real rrr_leg1_rho_tip_2_x = rrr_leg1_link2_centre_of_mass_x -
-            rrr_leg1_platform_joint_offset_x;
-        /* (rrr_leg1-h_2) first moment of link 2 about the connection point */
-        const real rrr_leg1_h_2_x = rrr_leg1_link2_mass*rrr_leg1_rho_tip_2_x;
-        const real rrr_leg1_h_2_y = rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_mass;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = 1/rrr_leg1_platform_joint_offset_x;
-        /* (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rrr_leg1_d_phi_2_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_h_2_y;
-        /* (rrr_leg1-J_2) inertia tensor of link 2 about the connection point */
-        const real rrr_leg1_J_2_t =
-            rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_centre_of_mass_y +
-            rrr_leg1_rho_tip_2_x*rrr_leg1_rho_tip_2_x;
-        const real rrr_leg1_J_2_zz = rrr_leg1_link2_inertia_zz +
-            rrr_leg1_J_2_t*rrr_leg1_link2_mass;
-        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real rrr_leg1_d_Gamma_2_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_J_2_zz;
-        const real rrr_leg1_d_Gamma_2_y = rrr_leg1_d_Gamma_2_t + rrr_leg1_h_2_x;
+        const real rrr_leg1_size_t = rrr_leg1_joint2_offset_x*rrr_leg1_joint2_offset_x;
+        const real rrr_leg1_size_t_2 =
+            rrr_leg1_platform_joint_offset_x*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_size_t_3 = R(4.58151643161e-07) + rrr_leg1_size_t + rrr_leg1_size_t_2;
+        const real rrr_leg1_size = root(rrr_leg1_size_t_3);
+        /* (rrr_leg1-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_leg1_h_1_in_spec1_x = rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_mass;
+        const real rrr_leg1_h_1_in_spec1_y = rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_mass;
         /* (rrr_leg1-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_leg1_J_1_t =
             rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_centre_of_mass_x +
             rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_centre_of_mass_y;
-        const real rrr_leg1_J_1_zz = rrr_leg1_link1_inertia_zz +
+        const real rrr_leg1_J_1_in_spec1_zz = rrr_leg1_link1_inertia_zz +
             rrr_leg1_J_1_t*rrr_leg1_link1_mass;
+        /* (rrr_leg1-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_leg1_rho_tip_2_in_spec2_x = rrr_leg1_link2_centre_of_mass_x -
+            rrr_leg1_platform_joint_offset_x;
+        /* (rrr_leg1-h_2) first moment of link 2 about the connection point */
+        const real rrr_leg1_h_2_in_spec2_x = rrr_leg1_link2_mass*rrr_leg1_rho_tip_2_in_spec2_x;
+        const real rrr_leg1_h_2_in_spec2_y = rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_mass;
+        /* (rrr_leg1-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_leg1_J_2_t =
+            rrr_leg1_link2_centre_of_mass_y*rrr_leg1_link2_centre_of_mass_y +
+            rrr_leg1_rho_tip_2_in_spec2_x*rrr_leg1_rho_tip_2_in_spec2_x;
+        const real rrr_leg1_J_2_in_spec2_zz = rrr_leg1_link2_inertia_zz +
+            rrr_leg1_J_2_t*rrr_leg1_link2_mass;
+        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+           beyond joint 1 */
+        const real rrr_leg1_Kd_1_t = R(0.5)*rrr_leg1_size_t;
+        const real rrr_leg1_Kd_1_t_2 = R(0.5)*rrr_leg1_size_t_2;
+        /* (rrr_leg1-rho2_1) squared amplitude */
+        const real rrr_leg1_rho2_1_t = rrr_leg1_size*rrr_leg1_size*rrr_leg1_size_t_3;
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = 1/rrr_leg1_size_t;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = 1/rrr_leg1_size_t_2;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_axes2_y = 1/rrr_leg1_platform_joint_offset_x;
+        /* (rrr_leg1-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_leg1_d_phi_2_t = rrr_leg1_h_2_in_spec2_y*rrr_leg1_w_2_in_axes2_y;
         /* (rrr_leg1-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last
            link about the connection point */
-        const real rrr_leg1_Jc_1_zz = rrr_leg1_J_1_zz + rrr_leg1_J_2_zz;
+        const real rrr_leg1_Jc_1_in_axes1_zz = rrr_leg1_J_1_in_spec1_zz +
+            rrr_leg1_J_2_in_spec2_zz;
+        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real rrr_leg1_d_Gamma_2_t = rrr_leg1_J_2_in_spec2_zz*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_d_Gamma_2_in_axes2_y = rrr_leg1_d_Gamma_2_t + rrr_leg1_h_2_in_spec2_x;
+        /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+           */
+        const real rrr_leg1_mu_1_t = gravity_x*rrr_leg1_base_frame_xx +
+            gravity_y*rrr_leg1_base_frame_yx;
+        const real rrr_leg1_mu_1_t_2 = gravity_x*rrr_leg1_base_frame_xy +
+            gravity_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rrr_leg1_rho2_1_t = 1/rrr_leg1_rho2_1_t;
+        const real inv_rrr_leg1_size = 1/rrr_leg1_size;
         /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_leg1_d_c_yy = -inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_d_Gamma_2_y -
-            inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_h_2_x;
+        const real rrr_leg1_d_c_in_axes2_yy =
+            -rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_y -
+            rrr_leg1_h_2_in_spec2_x*rrr_leg1_w_2_in_axes2_y;
         /* (h_star) first moment about the platform origin */
         const real rrr_leg1_h_star_t = rrr_leg1_link2_mass*rrr_leg1_platform_point_x;
         const real rrr_leg1_h_star_t_2 = rrr_leg1_link2_mass*rrr_leg1_platform_point_y;
@@ -649,36 +664,20 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
             rrr_leg1_platform_point_x*rrr_leg1_platform_point_x;
         const real rrr_leg1_J_star_t_3 = rrr_leg1_J_star_t*rrr_leg1_link2_mass;
         const real rrr_leg1_J_star_t_4 = rrr_leg1_J_star_t_2*rrr_leg1_link2_mass;
-        /* (rrr_leg1-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_leg1_h_1_x = rrr_leg1_link1_centre_of_mass_x*rrr_leg1_link1_mass;
-        const real rrr_leg1_h_1_y = rrr_leg1_link1_centre_of_mass_y*rrr_leg1_link1_mass;
-        /* (rrr_leg1-acc_1_o) remainder without the acceleration in: acceleration of the reference point
-           of link 1, less gravity */
-        const real rrr_leg1_g_r0_x = gravity_x*rrr_leg1_base_frame_xx +
-            gravity_y*rrr_leg1_base_frame_yx;
-        const real rrr_leg1_g_r0_y = gravity_x*rrr_leg1_base_frame_xy +
-            gravity_y*rrr_leg1_base_frame_yy;
         /* (potential) potential energy */
-        const real rrr_leg1_b_r0_x = rrr_leg1_base_frame_xx*rrr_leg1_base_point_x +
+        const real rrr_leg1_potential_t = rrr_leg1_base_frame_xx*rrr_leg1_base_point_x +
             rrr_leg1_base_frame_yx*rrr_leg1_base_point_y;
-        const real rrr_leg1_b_r0_y = rrr_leg1_base_frame_xy*rrr_leg1_base_point_x +
+        const real rrr_leg1_potential_t_2 = rrr_leg1_base_frame_xy*rrr_leg1_base_point_x +
             rrr_leg1_base_frame_yy*rrr_leg1_base_point_y;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real inv_rrr_leg1_rho2_1_t_4 = 1/rrr_leg1_rho2_1_t;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real inv_rrr_leg1_size = 1/rrr_leg1_size;
-        model->inv_rrr_leg1_Kd_1_t_5[leg] = inv_rrr_leg1_Kd_1_t_5;
-        model->inv_rrr_leg1_Kd_1_t_7[leg] = inv_rrr_leg1_Kd_1_t_7;
-        model->inv_rrr_leg1_platform_joint_offset_x[leg] = inv_rrr_leg1_platform_joint_offset_x;
-        model->inv_rrr_leg1_rho2_1_t_4[leg] = inv_rrr_leg1_rho2_1_t_4;
+        model->inv_rrr_leg1_rho2_1_t[leg] = inv_rrr_leg1_rho2_1_t;
         model->inv_rrr_leg1_size[leg] = inv_rrr_leg1_size;
-        model->rrr_leg1_J_1_zz[leg] = rrr_leg1_J_1_zz;
-        model->rrr_leg1_J_2_zz[leg] = rrr_leg1_J_2_zz;
-        model->rrr_leg1_Jc_1_zz[leg] = rrr_leg1_Jc_1_zz;
+        model->inv_rrr_leg1_size_t[leg] = inv_rrr_leg1_size_t;
+        model->inv_rrr_leg1_size_t_2[leg] = inv_rrr_leg1_size_t_2;
+        model->rrr_leg1_J_1_in_spec1_zz[leg] = rrr_leg1_J_1_in_spec1_zz;
+        model->rrr_leg1_J_2_in_spec2_zz[leg] = rrr_leg1_J_2_in_spec2_zz;
+        model->rrr_leg1_Jc_1_in_axes1_zz[leg] = rrr_leg1_Jc_1_in_axes1_zz;
+        model->rrr_leg1_Kd_1_t[leg] = rrr_leg1_Kd_1_t;
         model->rrr_leg1_Kd_1_t_2[leg] = rrr_leg1_Kd_1_t_2;
-        model->rrr_leg1_Kd_1_t_4[leg] = rrr_leg1_Kd_1_t_4;
-        model->rrr_leg1_b_r0_x[leg] = rrr_leg1_b_r0_x;
-        model->rrr_leg1_b_r0_y[leg] = rrr_leg1_b_r0_y;
         model->rrr_leg1_base_frame_xx[leg] = rrr_leg1_base_frame_xx;
         model->rrr_leg1_base_frame_xy[leg] = rrr_leg1_base_frame_xy;
         model->rrr_leg1_base_frame_yx[leg] = rrr_leg1_base_frame_yx;
@@ -686,32 +685,35 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         model->rrr_leg1_base_point_x[leg] = rrr_leg1_base_point_x;
         model->rrr_leg1_base_point_y[leg] = rrr_leg1_base_point_y;
         model->rrr_leg1_branch_1[leg] = rrr_leg1_branch_1;
+        model->rrr_leg1_d_Gamma_2_in_axes2_y[leg] = rrr_leg1_d_Gamma_2_in_axes2_y;
         model->rrr_leg1_d_Gamma_2_t[leg] = rrr_leg1_d_Gamma_2_t;
-        model->rrr_leg1_d_Gamma_2_y[leg] = rrr_leg1_d_Gamma_2_y;
-        model->rrr_leg1_d_c_yy[leg] = rrr_leg1_d_c_yy;
+        model->rrr_leg1_d_c_in_axes2_yy[leg] = rrr_leg1_d_c_in_axes2_yy;
         model->rrr_leg1_d_phi_2_t[leg] = rrr_leg1_d_phi_2_t;
-        model->rrr_leg1_g_r0_x[leg] = rrr_leg1_g_r0_x;
-        model->rrr_leg1_g_r0_y[leg] = rrr_leg1_g_r0_y;
-        model->rrr_leg1_h_1_x[leg] = rrr_leg1_h_1_x;
-        model->rrr_leg1_h_1_y[leg] = rrr_leg1_h_1_y;
-        model->rrr_leg1_h_2_x[leg] = rrr_leg1_h_2_x;
-        model->rrr_leg1_h_2_y[leg] = rrr_leg1_h_2_y;
+        model->rrr_leg1_h_1_in_spec1_x[leg] = rrr_leg1_h_1_in_spec1_x;
+        model->rrr_leg1_h_1_in_spec1_y[leg] = rrr_leg1_h_1_in_spec1_y;
+        model->rrr_leg1_h_2_in_spec2_x[leg] = rrr_leg1_h_2_in_spec2_x;
+        model->rrr_leg1_h_2_in_spec2_y[leg] = rrr_leg1_h_2_in_spec2_y;
         model->rrr_leg1_joint2_offset_x[leg] = rrr_leg1_joint2_offset_x;
         model->rrr_leg1_link1_mass[leg] = rrr_leg1_link1_mass;
         model->rrr_leg1_link2_mass[leg] = rrr_leg1_link2_mass;
+        model->rrr_leg1_mu_1_t[leg] = rrr_leg1_mu_1_t;
+        model->rrr_leg1_mu_1_t_2[leg] = rrr_leg1_mu_1_t_2;
         model->rrr_leg1_platform_joint_offset_x[leg] = rrr_leg1_platform_joint_offset_x;
         model->rrr_leg1_platform_point_x[leg] = rrr_leg1_platform_point_x;
         model->rrr_leg1_platform_point_y[leg] = rrr_leg1_platform_point_y;
+        model->rrr_leg1_potential_t[leg] = rrr_leg1_potential_t;
+        model->rrr_leg1_potential_t_2[leg] = rrr_leg1_potential_t_2;
         model->rrr_leg1_rho2_1_t[leg] = rrr_leg1_rho2_1_t;
         model->rrr_leg1_size[leg] = rrr_leg1_size;
-        total_rrr_leg1 += rrr_leg1_link2_mass;
-        total_rrr_leg1_x += rrr_leg1_h_star_t;
-        total_rrr_leg1_y += rrr_leg1_h_star_t_2;
-        total_rrr_leg1_xx += rrr_leg1_J_star_t_3;
-        total_rrr_leg1_zz += rrr_leg1_J_star_t_4;
-        total_rrr_leg1_x_2 += rrr_leg1_platform_point_x;
-        total_rrr_leg1_y_2 += rrr_leg1_platform_point_y;
-        total_rrr_leg1_2 += rrr_leg1_size_t;
+        model->rrr_leg1_w_2_in_axes2_y[leg] = rrr_leg1_w_2_in_axes2_y;
+        m_star_rrr_leg1 += rrr_leg1_link2_mass;
+        h_star_rrr_leg1_in_platform_x += rrr_leg1_h_star_t;
+        h_star_rrr_leg1_in_platform_y += rrr_leg1_h_star_t_2;
+        J_star_rrr_leg1_in_platform_xx += rrr_leg1_J_star_t_3;
+        J_star_rrr_leg1_in_platform_zz += rrr_leg1_J_star_t_4;
+        b_c_rrr_leg1_in_platform_x += rrr_leg1_platform_point_x;
+        b_c_rrr_leg1_in_platform_y += rrr_leg1_platform_point_y;
+        legs_size_rrr_leg1 += rrr_leg1_size_t_3;
     }
     for (size_t leg = 0; leg < 1; ++leg) {
         const size_t own = leg;
@@ -735,50 +737,61 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[own][2][2];
         static const signed char signs_rrr_branch_1[] = {1};
         const real rrr_branch_1 = signs_rrr_branch_1[own];
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
-        const real rrr_Kd_1_t_2 = R(0.5)*rrr_Kd_1_t;
-        const real rrr_Kd_1_t_3 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
-        const real rrr_Kd_1_t_4 = R(0.5)*rrr_Kd_1_t_3;
         /* (rrr-size) length of the leg's lever arms, the measure of what is near singular */
-        const real rrr_size_t = R(4.58151643161e-07) + rrr_Kd_1_t + rrr_Kd_1_t_3;
-        const real rrr_size = root(rrr_size_t);
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t;
-        /* (rrr-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rrr_Kd_1_t_5 = 1/rrr_Kd_1_t;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = 1/rrr_Kd_1_t_3;
-        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
-        const real rrr_rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-h_2) first moment of link 2 about the connection point */
-        const real rrr_h_2_x = rrr_link2_mass*rrr_rho_tip_2_x;
-        const real rrr_h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
-        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rrr_d_phi_2_t = inv_rrr_platform_joint_offset_x*rrr_h_2_y;
-        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
-        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
-            rrr_rho_tip_2_x*rrr_rho_tip_2_x;
-        const real rrr_J_2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = inv_rrr_platform_joint_offset_x*rrr_J_2_zz;
-        const real rrr_d_Gamma_2_y = rrr_d_Gamma_2_t + rrr_h_2_x;
+        const real rrr_size_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
+        const real rrr_size_t_2 = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
+        const real rrr_size_t_3 = R(4.58151643161e-07) + rrr_size_t + rrr_size_t_2;
+        const real rrr_size = root(rrr_size_t_3);
+        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
+        const real rrr_h_1_in_spec1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
+        const real rrr_h_1_in_spec1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
         /* (rrr-J_1) inertia tensor of link 1 about the origin of link 1 */
         const real rrr_J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
-        const real rrr_J_1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        const real rrr_J_1_in_spec1_zz = rrr_link1_inertia_zz + rrr_J_1_t*rrr_link1_mass;
+        /* (rrr-rho_tip_2) connection point to the centre of mass of link 2 */
+        const real rrr_rho_tip_2_in_spec2_x = rrr_link2_centre_of_mass_x -
+            rrr_platform_joint_offset_x;
+        /* (rrr-h_2) first moment of link 2 about the connection point */
+        const real rrr_h_2_in_spec2_x = rrr_link2_mass*rrr_rho_tip_2_in_spec2_x;
+        const real rrr_h_2_in_spec2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-J_2) inertia tensor of link 2 about the connection point */
+        const real rrr_J_2_t = rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y +
+            rrr_rho_tip_2_in_spec2_x*rrr_rho_tip_2_in_spec2_x;
+        const real rrr_J_2_in_spec2_zz = rrr_link2_inertia_zz + rrr_J_2_t*rrr_link2_mass;
+        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real rrr_Kd_1_t = R(0.5)*rrr_size_t;
+        const real rrr_Kd_1_t_2 = R(0.5)*rrr_size_t_2;
+        /* (rrr-rho2_1) squared amplitude */
+        const real rrr_rho2_1_t = rrr_size*rrr_size*rrr_size_t_3;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = 1/rrr_size_t;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = 1/rrr_size_t_2;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real rrr_w_2_in_axes2_y = 1/rrr_platform_joint_offset_x;
+        /* (rrr-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
+           about its reference point */
+        const real rrr_d_phi_2_t = rrr_h_2_in_spec2_y*rrr_w_2_in_axes2_y;
         /* (rrr-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
            about the connection point */
-        const real rrr_Jc_1_zz = rrr_J_1_zz + rrr_J_2_zz;
+        const real rrr_Jc_1_in_axes1_zz = rrr_J_1_in_spec1_zz + rrr_J_2_in_spec2_zz;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = rrr_J_2_in_spec2_zz*rrr_w_2_in_axes2_y;
+        const real rrr_d_Gamma_2_in_axes2_y = rrr_d_Gamma_2_t + rrr_h_2_in_spec2_x;
+        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+        const real rrr_mu_1_t = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
+        const real rrr_mu_1_t_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_rrr_rho2_1_t = 1/rrr_rho2_1_t;
+        const real inv_rrr_size = 1/rrr_size;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_c_yy = -inv_rrr_platform_joint_offset_x*rrr_d_Gamma_2_y -
-            inv_rrr_platform_joint_offset_x*rrr_h_2_x;
+        const real rrr_d_c_in_axes2_yy = -rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_y -
+            rrr_h_2_in_spec2_x*rrr_w_2_in_axes2_y;
         /* (h_star) first moment about the platform origin */
         const real rrr_h_star_t = rrr_link2_mass*rrr_platform_point_x;
         const real rrr_h_star_t_2 = rrr_link2_mass*rrr_platform_point_y;
@@ -787,34 +800,20 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real rrr_J_star_t_2 = rrr_J_star_t + rrr_platform_point_x*rrr_platform_point_x;
         const real rrr_J_star_t_3 = rrr_J_star_t*rrr_link2_mass;
         const real rrr_J_star_t_4 = rrr_J_star_t_2*rrr_link2_mass;
-        /* (rrr-h_1) first moment of link 1 about the origin of link 1 */
-        const real rrr_h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
-        const real rrr_h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
-        /* (rrr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
-           link 1, less gravity */
-        const real rrr_g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
-        const real rrr_g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
         /* (potential) potential energy */
-        const real rrr_b_r0_x = rrr_base_frame_xx*rrr_base_point_x +
+        const real rrr_potential_t = rrr_base_frame_xx*rrr_base_point_x +
             rrr_base_frame_yx*rrr_base_point_y;
-        const real rrr_b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
+        const real rrr_potential_t_2 = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
-        /* (rrr-rho2_1) squared amplitude */
-        const real inv_rrr_rho2_1_t_4 = 1/rrr_rho2_1_t;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_size = 1/rrr_size;
-        model->inv_rrr_Kd_1_t_5[leg] = inv_rrr_Kd_1_t_5;
-        model->inv_rrr_Kd_1_t_7[leg] = inv_rrr_Kd_1_t_7;
-        model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
-        model->inv_rrr_rho2_1_t_4[leg] = inv_rrr_rho2_1_t_4;
+        model->inv_rrr_rho2_1_t[leg] = inv_rrr_rho2_1_t;
         model->inv_rrr_size[leg] = inv_rrr_size;
-        model->rrr_J_1_zz[leg] = rrr_J_1_zz;
-        model->rrr_J_2_zz[leg] = rrr_J_2_zz;
-        model->rrr_Jc_1_zz[leg] = rrr_Jc_1_zz;
+        model->inv_rrr_size_t[leg] = inv_rrr_size_t;
+        model->inv_rrr_size_t_2[leg] = inv_rrr_size_t_2;
+        model->rrr_J_1_in_spec1_zz[leg] = rrr_J_1_in_spec1_zz;
+        model->rrr_J_2_in_spec2_zz[leg] = rrr_J_2_in_spec2_zz;
+        model->rrr_Jc_1_in_axes1_zz[leg] = rrr_Jc_1_in_axes1_zz;
+        model->rrr_Kd_1_t[leg] = rrr_Kd_1_t;
         model->rrr_Kd_1_t_2[leg] = rrr_Kd_1_t_2;
-        model->rrr_Kd_1_t_4[leg] = rrr_Kd_1_t_4;
-        model->rrr_b_r0_x[leg] = rrr_b_r0_x;
-        model->rrr_b_r0_y[leg] = rrr_b_r0_y;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
         model->rrr_base_frame_xy[leg] = rrr_base_frame_xy;
         model->rrr_base_frame_yx[leg] = rrr_base_frame_yx;
@@ -822,58 +821,66 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         model->rrr_base_point_x[leg] = rrr_base_point_x;
         model->rrr_base_point_y[leg] = rrr_base_point_y;
         model->rrr_branch_1[leg] = rrr_branch_1;
+        model->rrr_d_Gamma_2_in_axes2_y[leg] = rrr_d_Gamma_2_in_axes2_y;
         model->rrr_d_Gamma_2_t[leg] = rrr_d_Gamma_2_t;
-        model->rrr_d_Gamma_2_y[leg] = rrr_d_Gamma_2_y;
-        model->rrr_d_c_yy[leg] = rrr_d_c_yy;
+        model->rrr_d_c_in_axes2_yy[leg] = rrr_d_c_in_axes2_yy;
         model->rrr_d_phi_2_t[leg] = rrr_d_phi_2_t;
-        model->rrr_g_r0_x[leg] = rrr_g_r0_x;
-        model->rrr_g_r0_y[leg] = rrr_g_r0_y;
-        model->rrr_h_1_x[leg] = rrr_h_1_x;
-        model->rrr_h_1_y[leg] = rrr_h_1_y;
-        model->rrr_h_2_x[leg] = rrr_h_2_x;
-        model->rrr_h_2_y[leg] = rrr_h_2_y;
+        model->rrr_h_1_in_spec1_x[leg] = rrr_h_1_in_spec1_x;
+        model->rrr_h_1_in_spec1_y[leg] = rrr_h_1_in_spec1_y;
+        model->rrr_h_2_in_spec2_x[leg] = rrr_h_2_in_spec2_x;
+        model->rrr_h_2_in_spec2_y[leg] = rrr_h_2_in_spec2_y;
         model->rrr_joint2_offset_x[leg] = rrr_joint2_offset_x;
         model->rrr_link1_mass[leg] = rrr_link1_mass;
         model->rrr_link2_mass[leg] = rrr_link2_mass;
+        model->rrr_mu_1_t[leg] = rrr_mu_1_t;
+        model->rrr_mu_1_t_2[leg] = rrr_mu_1_t_2;
         model->rrr_platform_joint_offset_x[leg] = rrr_platform_joint_offset_x;
         model->rrr_platform_point_x[leg] = rrr_platform_point_x;
         model->rrr_platform_point_y[leg] = rrr_platform_point_y;
+        model->rrr_potential_t[leg] = rrr_potential_t;
+        model->rrr_potential_t_2[leg] = rrr_potential_t_2;
         model->rrr_rho2_1_t[leg] = rrr_rho2_1_t;
         model->rrr_size[leg] = rrr_size;
-        total_rrr += rrr_link2_mass;
-        total_rrr_x += rrr_h_star_t;
-        total_rrr_y += rrr_h_star_t_2;
-        total_rrr_xx += rrr_J_star_t_3;
-        total_rrr_zz += rrr_J_star_t_4;
-        total_rrr_x_2 += rrr_platform_point_x;
-        total_rrr_y_2 += rrr_platform_point_y;
-        total_rrr_2 += rrr_size_t;
+        model->rrr_w_2_in_axes2_y[leg] = rrr_w_2_in_axes2_y;
+        m_star_rrr += rrr_link2_mass;
+        h_star_rrr_in_platform_x += rrr_h_star_t;
+        h_star_rrr_in_platform_y += rrr_h_star_t_2;
+        J_star_rrr_in_platform_xx += rrr_J_star_t_3;
+        J_star_rrr_in_platform_zz += rrr_J_star_t_4;
+        b_c_rrr_in_platform_x += rrr_platform_point_x;
+        b_c_rrr_in_platform_y += rrr_platform_point_y;
+        legs_size_rrr += rrr_size_t_3;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_rrr + total_rrr_leg1;
+    const real m_star = m_star_rrr + m_star_rrr_leg1 + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_rrr_leg1_x + total_rrr_x;
-    const real h_star_y = h_star_t_2 + total_rrr_leg1_y + total_rrr_y;
+    const real h_star_in_platform_x = h_star_rrr_in_platform_x + h_star_rrr_leg1_in_platform_x
+        + h_star_t;
+    const real h_star_in_platform_y = h_star_rrr_in_platform_y + h_star_rrr_leg1_in_platform_y
+        + h_star_t_2;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = J_star_t_3 + total_rrr_leg1_xx + total_rrr_xx;
-    const real J_star_t_5 = J_star_xx - J_star_t_4 - platform_inertia_zz - total_rrr_leg1_zz -
-        total_rrr_zz;
-    const real J_star_t_6 = J_star_t_5 - J_star_xx;
+    const real J_star_in_platform_xx = J_star_rrr_in_platform_xx +
+        J_star_rrr_leg1_in_platform_xx + J_star_t_3;
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_rrr_in_platform_zz -
+        J_star_rrr_leg1_in_platform_zz - J_star_t_4 - platform_inertia_zz;
+    const real J_star_zz = J_star_in_platform_xx - J_star_t_5;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.5)*total_rrr_leg1_x_2 + R(0.5)*total_rrr_x_2;
-    const real b_c_y = R(0.5)*total_rrr_leg1_y_2 + R(0.5)*total_rrr_y_2;
+    const real b_c_in_platform_x = R(0.5)*b_c_rrr_in_platform_x +
+        R(0.5)*b_c_rrr_leg1_in_platform_x;
+    const real b_c_in_platform_y = R(0.5)*b_c_rrr_in_platform_y +
+        R(0.5)*b_c_rrr_leg1_in_platform_y;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = root(R(0.5)*total_rrr_2 + R(0.5)*total_rrr_leg1_2);
-    model->J_star_t_6 = J_star_t_6;
+    const real legs_size = root(R(0.5)*legs_size_rrr + R(0.5)*legs_size_rrr_leg1);
+    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
     model->legs_size = legs_size;
     model->m_star = m_star;
     return OK;
@@ -1314,22 +1321,22 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -1337,11 +1344,11 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[4*w + k] = t_dot_x;
         s[5*w + k] = t_dot_y;
         s[6*w + k] = omega_z;
-        s[7*w + k] = h_star_in_base_x;
-        s[8*w + k] = h_star_in_base_y;
+        s[7*w + k] = h_star_x;
+        s[8*w + k] = h_star_y;
         s[9*w + k] = Z_p_x;
         s[10*w + k] = Z_p_y;
-        s[11*w + k] = Z_q_t;
+        s[11*w + k] = Z_q_z;
     }
 }
 
@@ -1356,35 +1363,33 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -1394,24 +1399,6 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -1419,188 +1406,214 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
-        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_w_2_t =
-            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x;
-        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
-        const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_r0_x;
-        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
-        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
-        const real rrr_leg1_d_Gamma_2_x = -rrr_leg1_h_2_y - inv_rrr_leg1_r_1_r0_y*(rrr_leg1_J_2_zz
-            - rrr_leg1_d_Gamma_2_t_2);
-        /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real rrr_leg1_Jc_1_zz = m->rrr_leg1_Jc_1_zz[i];
-        const real rrr_leg1_d_Gamma_1_x = -rrr_leg1_h_2_y -
-            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_Jc_1_zz - rrr_leg1_d_Gamma_2_t_2);
-        /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real rrr_leg1_d_Gamma_2_y = m->rrr_leg1_d_Gamma_2_y[i];
-        const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
-        const real rrr_leg1_d_c_xy = rrr_leg1_d_phi_2_t +
-            inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_2_y - rrr_leg1_d_Gamma_2_y*rrr_leg1_w_2_t;
-        /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_leg1_d_c_yy = m->rrr_leg1_d_c_yy[i];
-        const real rrr_leg1_Q_t = inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_1_x +
-            rrr_leg1_h_2_y*(rrr_leg1_w_2_t - inv_rrr_leg1_r_1_r0_y) - rrr_leg1_d_c_yy -
-            rrr_leg1_d_Gamma_2_x*rrr_leg1_w_2_t;
-        const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-        const real rrr_leg1_Q_t_3 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_d_c_xy +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_2;
-        const real rrr_leg1_Q_t_4 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_2 -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_d_c_xy;
-        const real rrr_leg1_Q_t_5 = rrr_leg1_d_c_yy +
-            2*axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_3;
-        const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_3 +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_4;
-        const real rrr_leg1_Q_t_7 = rrr_leg1_d_c_yy +
-            2*axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_4;
-        /* (M_ta) coupling block of M */
-        const real rrr_leg1_M_ta_t = rrr_leg1_Q_t_5*rrr_leg1_q_in_base_y +
-            rrr_leg1_Q_t_6*rrr_leg1_q_in_base_x;
-        const real rrr_leg1_M_ta_t_2 = rrr_leg1_Q_t_6*rrr_leg1_q_in_base_y +
-            rrr_leg1_Q_t_7*rrr_leg1_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real rrr_leg1_M_aa_t = rrr_leg1_M_ta_t*rrr_leg1_q_in_base_y +
-            rrr_leg1_M_ta_t_2*rrr_leg1_q_in_base_x;
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
         /* (rrr_leg1-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_in_base_y;
-        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y;
+        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y;
-        /* (rrr_leg1-qd_2) rate of joint 2 */
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
+        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+        const real rrr_leg1_w_2_in_axes2_x =
+            -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
+        /* (rrr_leg1-qd_1) rate of joint 1 */
         const real rrr_leg1_qd_1 =
-            inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_y);
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real rrr_leg1_omega_2_z =
-            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_x
-            + axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x)
-            - rrr_leg1_qd_1;
-        /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
-        const real rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_2;
-        const real rrr_leg1_u_1_t_2 = omega_z*rrr_leg1_S_dot_t;
+            rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y);
         /* (rrr_leg1-W_1) centripetal tensor of link 1 */
         const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
+            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_bias_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
         /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
-        const real rrr_leg1_u_1_tip_x = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_u_1_t_2 -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_u_1_t;
-        const real rrr_leg1_u_1_tip_y = -axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_u_1_t -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_u_1_t_2;
+        const real rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2;
+        const real rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t;
+        const real rrr_leg1_u_1_in_axes2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
+        const real rrr_leg1_u_1_in_axes2_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x -
+            axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_in_axes2_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
         /* (rrr_leg1-rel_o) remainder without the acceleration in: acceleration of the connection point
            left to the joint accelerations */
-        const real rrr_leg1_rel_o_x = rrr_leg1_u_1_tip_x - rrr_leg1_bias_x;
-        const real rrr_leg1_rel_o_y = rrr_leg1_u_1_tip_y +
+        const real rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x;
+        const real rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
             rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
-        /* (rrr_leg1-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_leg1_qdd_1_o = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_o_x;
+        /* (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1 */
+        const real rrr_leg1_B_1_o_in_axes1_xy =
+            -rrr_leg1_rel_o_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
         /* (rrr_leg1-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_leg1_alpha_2_o_z = inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_o_y +
-            rrr_leg1_qdd_1_o*rrr_leg1_r_1_r0_x) - rrr_leg1_qdd_1_o;
+        const real rrr_leg1_alpha_2_o_in_axes2_z =
+            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_o_in_axes2_y +
+            rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy;
         /* (rrr_leg1-acc_2_o) remainder without the acceleration in: acceleration of the reference point
            of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_leg1_acc_2_o_x = rrr_leg1_u_1_tip_x +
-            axis_y_rrr_leg1_axes2_in_base_x*gravity_y - axis_y_rrr_leg1_axes2_in_base_y*gravity_x;
-        const real rrr_leg1_acc_2_o_y = rrr_leg1_u_1_tip_y -
-            axis_y_rrr_leg1_axes2_in_base_x*gravity_x - axis_y_rrr_leg1_axes2_in_base_y*gravity_y;
+        const real rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*gravity_y - axis_x_rrr_leg1_axes2_x*gravity_x;
+        const real rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
+            axis_x_rrr_leg1_axes2_x*gravity_y - axis_y_rrr_leg1_axes2_x*gravity_x;
         /* (rrr_leg1-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 2, about their reference points */
-        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
-        const real rrr_leg1_mu_2_o_z = rrr_leg1_J_2_zz*rrr_leg1_alpha_2_o_z +
-            rrr_leg1_acc_2_o_y*rrr_leg1_h_2_x - rrr_leg1_acc_2_o_x*rrr_leg1_h_2_y;
+        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
+        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
+        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+        const real rrr_leg1_mu_2_o_in_axes2_z =
+            rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
+            rrr_leg1_acc_2_o_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
+            rrr_leg1_acc_2_o_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
+        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+           links' inertia and weight */
+        const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
+        const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x;
+        const real rrr_leg1_d_Gamma_2_in_axes2_x =
+            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
+            rrr_leg1_h_2_in_spec2_y;
         /* (rrr_leg1-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 1, about their reference points */
-        const real rrr_leg1_J_1_zz = m->rrr_leg1_J_1_zz[i];
-        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
-        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
-        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
-        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
-        const real rrr_leg1_mu_1_o_z = rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x +
-            rrr_leg1_g_r0_y*rrr_leg1_s_1) - rrr_leg1_J_1_zz*rrr_leg1_qdd_1_o -
-            rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1);
+        const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
+        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
+        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
+        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
+        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
+        const real rrr_leg1_mu_1_o_in_axes1_z =
+            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
+            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) - rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz
+            - rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+            rrr_leg1_mu_1_t*rrr_leg1_s_1);
         /* (rrr_leg1-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from
            1 outwards, the force at the connection point left out */
-        const real rrr_leg1_N_1_o_z = rrr_leg1_mu_1_o_z + rrr_leg1_mu_2_o_z;
+        const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
+            rrr_leg1_mu_2_o_in_axes2_z;
+        /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real rrr_leg1_Jc_1_in_axes1_zz = m->rrr_leg1_Jc_1_in_axes1_zz[i];
+        const real rrr_leg1_d_Gamma_1_in_axes2_x =
+            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
+            rrr_leg1_h_2_in_spec2_y;
         /* (rrr_leg1-G_o) remainder without the acceleration in: force at the connection point that
            balances the leg's inertia and weight along all freedoms */
-        const real rrr_leg1_G_o_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_o_z;
+        const real rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
+        /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real rrr_leg1_d_Gamma_2_in_axes2_y = m->rrr_leg1_d_Gamma_2_in_axes2_y[i];
+        const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
+        const real rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_phi_2_t -
+            rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
+            rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x;
         /* (rrr_leg1-c_o) remainder without the acceleration in: leg force on the platform without
            actuation and without the mass at the connection point */
-        const real rrr_leg1_c_o_x = rrr_leg1_W_2_t*rrr_leg1_h_2_x +
-            rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_y -
-            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_o_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_o_z);
-        const real rrr_leg1_c_o_y = rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_o_t -
-            rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_x;
+        const real rrr_leg1_c_o_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
+            rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+            rrr_leg1_N_1_o_in_axes1_z);
+        const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
+            rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
+        /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_leg1_d_c_in_axes2_yy = m->rrr_leg1_d_c_in_axes2_yy[i];
+        const real rrr_leg1_Q_t = rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x +
+            rrr_leg1_w_2_in_axes2_x) - rrr_leg1_d_c_in_axes2_yy -
+            rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
+            rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x;
+        const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
+        const real rrr_leg1_Q_t_3 = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+        const real rrr_leg1_Q_t_4 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
+            axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+        const real rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy -
+            2*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+        const real rrr_leg1_Q_xy = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+        const real rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy -
+            2*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
         /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-        const real rrr_leg1_U_in_base_x = -axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_y -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_x;
-        const real rrr_leg1_U_in_base_y = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_x -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_y;
+        const real rrr_leg1_U_x = -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+        const real rrr_leg1_U_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+            axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+        /* (M_ta) coupling block of M */
+        const real rrr_leg1_M_ta_t = rrr_leg1_Q_xy*rrr_leg1_q_x - rrr_leg1_Q_xx*rrr_leg1_q_y;
+        const real rrr_leg1_M_ta_t_2 = rrr_leg1_Q_yy*rrr_leg1_q_x - rrr_leg1_Q_xy*rrr_leg1_q_y;
+        /* (M_aa) rotational block of M */
+        const real rrr_leg1_M_aa_t = rrr_leg1_M_ta_t_2*rrr_leg1_q_x -
+            rrr_leg1_M_ta_t*rrr_leg1_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_leg1_Z_a_t = rrr_leg1_U_in_base_y*rrr_leg1_q_in_base_x -
-            rrr_leg1_U_in_base_x*rrr_leg1_q_in_base_y;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
-        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_Z_a_t = rrr_leg1_U_y*rrr_leg1_q_x - rrr_leg1_U_x*rrr_leg1_q_y;
         /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_1_z = rrr_leg1_q_in_base_x*rrr_leg1_w_1_t_2 +
-            rrr_leg1_q_in_base_y*rrr_leg1_w_1_t;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_base_x =
-            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
-        const real rrr_leg1_w_2_in_base_y =
-            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
+        const real rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x;
         /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_2_z = rrr_leg1_q_in_base_x*rrr_leg1_w_2_in_base_y -
-            rrr_leg1_q_in_base_y*rrr_leg1_w_2_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_Q_t_5 : rrr_leg1_Q_t_5;  /* total_rrr_leg1_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_Q_t_6 : rrr_leg1_Q_t_6;  /* total_rrr_leg1_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_Q_t_7 : rrr_leg1_Q_t_7;  /* total_rrr_leg1_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_leg1_M_ta_t : rrr_leg1_M_ta_t;  /* total_rrr_leg1_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_leg1_M_ta_t_2 : rrr_leg1_M_ta_t_2;  /* total_rrr_leg1_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_leg1_M_aa_t : rrr_leg1_M_aa_t;  /* total_rrr_leg1_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rrr_leg1_U_in_base_x : rrr_leg1_U_in_base_x;  /* total_rrr_leg1_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rrr_leg1_U_in_base_y : rrr_leg1_U_in_base_y;  /* total_rrr_leg1_y */
-        terms[8*count + k] = add ? terms[8*count + k] + rrr_leg1_Z_a_t : rrr_leg1_Z_a_t;  /* total_rrr_leg1_z */
-        o[0*count + k] = -rrr_leg1_w_1_t;
-        o[1*count + k] = rrr_leg1_w_1_t_2;
+        const real rrr_leg1_H_a_2_z = rrr_leg1_q_x*rrr_leg1_w_2_y - rrr_leg1_q_y*rrr_leg1_w_2_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_Q_xx : rrr_leg1_Q_xx;  /* M_tt_rrr_leg1_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_Q_xy : rrr_leg1_Q_xy;  /* M_tt_rrr_leg1_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_Q_yy : rrr_leg1_Q_yy;  /* M_tt_rrr_leg1_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_leg1_M_ta_t : rrr_leg1_M_ta_t;  /* M_ta_rrr_leg1_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_leg1_M_ta_t_2 : rrr_leg1_M_ta_t_2;  /* M_ta_rrr_leg1_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_leg1_M_aa_t : rrr_leg1_M_aa_t;  /* M_aa_rrr_leg1_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + rrr_leg1_U_x : rrr_leg1_U_x;  /* Z_t_rrr_leg1_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rrr_leg1_U_y : rrr_leg1_U_y;  /* Z_t_rrr_leg1_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + rrr_leg1_Z_a_t : rrr_leg1_Z_a_t;  /* Z_a_rrr_leg1_z */
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_leg1_w_1_x;
+        o[1*count + k] = rrr_leg1_w_1_y;
+        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_leg1_H_a_1_z;
-        o[3*count + k] = rrr_leg1_w_2_in_base_x;
-        o[4*count + k] = rrr_leg1_w_2_in_base_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        o[3*count + k] = rrr_leg1_w_2_x;
+        o[4*count + k] = rrr_leg1_w_2_y;
+        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
         o[5*count + k] = rrr_leg1_H_a_2_z;
-        o[8*count + k] = (rrr_leg1_w_1_t + (rrr_leg1_w_1_t_2 + rrr_leg1_H_a_1_z)) +
-            (rrr_leg1_w_2_in_base_x + (rrr_leg1_w_2_in_base_y + rrr_leg1_H_a_2_z));
+        o[8*count + k] = (rrr_leg1_w_1_x + (rrr_leg1_w_1_y + rrr_leg1_H_a_1_z)) + (rrr_leg1_w_2_x
+            + (rrr_leg1_w_2_y + rrr_leg1_H_a_2_z));
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[7*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[6*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -1633,31 +1646,31 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -1667,176 +1680,186 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
-            rrr_d_Gamma_2_t_2);
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
-        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
-            rrr_d_Gamma_2_t_2);
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
-            rrr_d_Gamma_2_y*rrr_w_2_t;
-        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
-            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
-        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
-        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
-        /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
-        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
-        /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-w_2) reciprocal vector 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
-        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+            axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+            axis_x_rrr_axes2_x*rrr_u_1_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
-        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
-            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
+            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
-            rrr_acc_2_o_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
+        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
+        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
+            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
+        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
+            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
+        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
-        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
+        /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
+        const real rrr_Q_t = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
+        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
-        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        /* (M_ta) coupling block of M */
+        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        /* (M_aa) rotational block of M */
+        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
-        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
-        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
+        terms[7*count + k] = add ? terms[7*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        /* (Z_a) rotational part of Z */
+        terms[8*count + k] = add ? terms[8*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -1859,55 +1882,60 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rrr_leg1_xx = sums[0*w + k];
+        const real M_tt_rrr_xx = sums[9*w + k];
         const real m_star = m->m_star;
-        const real total_rrr_leg1_xx = sums[0*w + k];
-        const real total_rrr_xx = sums[9*w + k];
-        const real M_tt_xx = m_star - total_rrr_leg1_xx - total_rrr_xx;
-        const real total_rrr_leg1_xy = sums[1*w + k];
-        const real total_rrr_xy = sums[10*w + k];
-        const real M_tt_xy = total_rrr_leg1_xy + total_rrr_xy;
-        const real total_rrr_leg1_yy = sums[2*w + k];
-        const real total_rrr_yy = sums[11*w + k];
-        const real M_tt_yy = m_star - total_rrr_leg1_yy - total_rrr_yy;
+        const real M_tt_xx = M_tt_rrr_leg1_xx + M_tt_rrr_xx + m_star;
+        const real M_tt_rrr_leg1_xy = sums[1*w + k];
+        const real M_tt_rrr_xy = sums[10*w + k];
+        const real M_tt_xy = M_tt_rrr_leg1_xy + M_tt_rrr_xy;
+        const real M_tt_rrr_leg1_yy = sums[2*w + k];
+        const real M_tt_rrr_yy = sums[11*w + k];
+        const real M_tt_yy = M_tt_rrr_leg1_yy + M_tt_rrr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[8*w + k];
-        const real total_rrr_leg1_xz = sums[3*w + k];
-        const real total_rrr_xz = sums[12*w + k];
-        const real M_ta_xz = total_rrr_leg1_xz + total_rrr_xz - h_star_in_base_y;
-        const real h_star_in_base_x = s[7*w + k];
-        const real total_rrr_leg1_yz = sums[4*w + k];
-        const real total_rrr_yz = sums[13*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_rrr_leg1_yz - total_rrr_yz;
+        const real M_ta_rrr_leg1_xz = sums[3*w + k];
+        const real M_ta_rrr_xz = sums[12*w + k];
+        const real h_star_y = s[8*w + k];
+        const real M_ta_xz = M_ta_rrr_leg1_xz + M_ta_rrr_xz - h_star_y;
+        const real M_ta_rrr_leg1_yz = sums[4*w + k];
+        const real M_ta_rrr_yz = sums[13*w + k];
+        const real h_star_x = s[7*w + k];
+        const real M_ta_yz = M_ta_rrr_leg1_yz + M_ta_rrr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_rrr_leg1_zz = sums[5*w + k];
-        const real total_rrr_zz = sums[14*w + k];
-        const real M_aa_zz = -J_star_t_6 - total_rrr_leg1_zz - total_rrr_zz;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_rrr_leg1_zz = sums[5*w + k];
+        const real M_aa_rrr_zz = sums[14*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rrr_leg1_zz + M_aa_rrr_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[9*w + k];
-        const real total_rrr_leg1_x = sums[6*w + k];
-        const real total_rrr_x = sums[15*w + k];
-        const real Z_t_x = Z_p_x + total_rrr_leg1_x + total_rrr_x;
+        const real Z_t_rrr_leg1_x = sums[6*w + k];
+        const real Z_t_rrr_x = sums[15*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rrr_leg1_x + Z_t_rrr_x;
         const real Z_p_y = s[10*w + k];
-        const real total_rrr_leg1_y = sums[7*w + k];
-        const real total_rrr_y = sums[16*w + k];
-        const real Z_t_y = Z_p_y + total_rrr_leg1_y + total_rrr_y;
+        const real Z_t_rrr_leg1_y = sums[7*w + k];
+        const real Z_t_rrr_y = sums[16*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rrr_leg1_y + Z_t_rrr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[11*w + k];
-        const real total_rrr_leg1_z = sums[8*w + k];
-        const real total_rrr_z = sums[17*w + k];
-        const real Z_a_z = total_rrr_leg1_z + total_rrr_z - Z_q_t;
+        const real Z_a_rrr_leg1_z = sums[8*w + k];
+        const real Z_a_rrr_z = sums[17*w + k];
+        const real Z_q_z = s[11*w + k];
+        const real Z_a_z = Z_a_rrr_leg1_z + Z_a_rrr_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_xz;
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[8*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
         t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_yy + M_ta_xz)) + ((M_ta_yz + M_aa_zz) + (Z_t_x
             + (Z_t_y + Z_a_z)));
@@ -1968,16 +1996,16 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
         const real R_xx = cosine(X_2);
         const real R_yx = sine(X_2);
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
-        s[4*w + k] = h_star_in_base_x;
-        s[5*w + k] = h_star_in_base_y;
+        s[4*w + k] = h_star_x;
+        s[5*w + k] = h_star_y;
     }
 }
 
@@ -1992,35 +2020,33 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -2030,24 +2056,6 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -2055,75 +2063,96 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
         /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
-        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
         /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_w_2_t =
-            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x;
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+        const real rrr_leg1_w_2_in_axes2_x =
+            -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
         /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
         const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
-        const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_r0_x;
-        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
-        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
-        const real rrr_leg1_d_Gamma_2_x = -rrr_leg1_h_2_y - inv_rrr_leg1_r_1_r0_y*(rrr_leg1_J_2_zz
-            - rrr_leg1_d_Gamma_2_t_2);
+        const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x;
+        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
+        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+        const real rrr_leg1_d_Gamma_2_in_axes2_x =
+            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
+            rrr_leg1_h_2_in_spec2_y;
         /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
            links' inertia and weight */
-        const real rrr_leg1_Jc_1_zz = m->rrr_leg1_Jc_1_zz[i];
-        const real rrr_leg1_d_Gamma_1_x = -rrr_leg1_h_2_y -
-            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_Jc_1_zz - rrr_leg1_d_Gamma_2_t_2);
+        const real rrr_leg1_Jc_1_in_axes1_zz = m->rrr_leg1_Jc_1_in_axes1_zz[i];
+        const real rrr_leg1_d_Gamma_1_in_axes2_x =
+            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
+            rrr_leg1_h_2_in_spec2_y;
         /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_leg1_d_Gamma_2_y = m->rrr_leg1_d_Gamma_2_y[i];
+        const real rrr_leg1_d_Gamma_2_in_axes2_y = m->rrr_leg1_d_Gamma_2_in_axes2_y[i];
         const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
-        const real rrr_leg1_d_c_xy = rrr_leg1_d_phi_2_t +
-            inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_2_y - rrr_leg1_d_Gamma_2_y*rrr_leg1_w_2_t;
+        const real rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_phi_2_t -
+            rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
+            rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x;
         /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_leg1_d_c_yy = m->rrr_leg1_d_c_yy[i];
-        const real rrr_leg1_Q_t = inv_rrr_leg1_r_1_r0_y*rrr_leg1_d_Gamma_1_x +
-            rrr_leg1_h_2_y*(rrr_leg1_w_2_t - inv_rrr_leg1_r_1_r0_y) - rrr_leg1_d_c_yy -
-            rrr_leg1_d_Gamma_2_x*rrr_leg1_w_2_t;
-        const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-        const real rrr_leg1_Q_t_3 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_d_c_xy +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_2;
-        const real rrr_leg1_Q_t_4 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_2 -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_d_c_xy;
-        const real rrr_leg1_Q_t_5 = rrr_leg1_d_c_yy +
-            2*axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_3;
-        const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_3 +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_Q_t_4;
-        const real rrr_leg1_Q_t_7 = rrr_leg1_d_c_yy +
-            2*axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_Q_t_4;
+        const real rrr_leg1_Q_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_Q_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*rrr_leg1_base_frame_xy -
+            rrr_leg1_Q_t*rrr_leg1_base_frame_xx;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*rrr_leg1_base_frame_yy -
+            rrr_leg1_Q_t*rrr_leg1_base_frame_yx;
+        const real rrr_leg1_d_c_in_axes2_yy = m->rrr_leg1_d_c_in_axes2_yy[i];
+        const real rrr_leg1_Q_t_3 = rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x +
+            rrr_leg1_w_2_in_axes2_x) - rrr_leg1_d_c_in_axes2_yy -
+            rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
+            rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x;
+        const real rrr_leg1_Q_t_4 = R(0.5)*rrr_leg1_Q_t_3;
+        const real rrr_leg1_Q_t_5 = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+        const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 -
+            axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+        const real rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy -
+            2*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
+        const real rrr_leg1_Q_xy = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_6 +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
+        const real rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy -
+            2*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_6;
         /* (M_ta) coupling block of M */
-        const real rrr_leg1_M_ta_t = rrr_leg1_Q_t_5*rrr_leg1_q_in_base_y +
-            rrr_leg1_Q_t_6*rrr_leg1_q_in_base_x;
-        const real rrr_leg1_M_ta_t_2 = rrr_leg1_Q_t_6*rrr_leg1_q_in_base_y +
-            rrr_leg1_Q_t_7*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_M_ta_t = rrr_leg1_Q_xy*rrr_leg1_q_x - rrr_leg1_Q_xx*rrr_leg1_q_y;
+        const real rrr_leg1_M_ta_t_2 = rrr_leg1_Q_yy*rrr_leg1_q_x - rrr_leg1_Q_xy*rrr_leg1_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_leg1_M_aa_t = rrr_leg1_M_ta_t*rrr_leg1_q_in_base_y +
-            rrr_leg1_M_ta_t_2*rrr_leg1_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_Q_t_5 : rrr_leg1_Q_t_5;  /* total_rrr_leg1_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_Q_t_6 : rrr_leg1_Q_t_6;  /* total_rrr_leg1_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_Q_t_7 : rrr_leg1_Q_t_7;  /* total_rrr_leg1_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_leg1_M_ta_t : rrr_leg1_M_ta_t;  /* total_rrr_leg1_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_leg1_M_ta_t_2 : rrr_leg1_M_ta_t_2;  /* total_rrr_leg1_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_leg1_M_aa_t : rrr_leg1_M_aa_t;  /* total_rrr_leg1_zz */
+        const real rrr_leg1_M_aa_t = rrr_leg1_M_ta_t_2*rrr_leg1_q_x -
+            rrr_leg1_M_ta_t*rrr_leg1_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_Q_xx : rrr_leg1_Q_xx;  /* M_tt_rrr_leg1_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_Q_xy : rrr_leg1_Q_xy;  /* M_tt_rrr_leg1_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_Q_yy : rrr_leg1_Q_yy;  /* M_tt_rrr_leg1_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_leg1_M_ta_t : rrr_leg1_M_ta_t;  /* M_ta_rrr_leg1_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_leg1_M_ta_t_2 : rrr_leg1_M_ta_t_2;  /* M_ta_rrr_leg1_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_leg1_M_aa_t : rrr_leg1_M_aa_t;  /* M_aa_rrr_leg1_zz */
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[0*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -2148,31 +2177,31 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2182,85 +2211,87 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
         /* (rrr-w_2) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_w_2_t = inv_rrr_platform_joint_offset_x*inv_rrr_r_1_r0_y*rrr_r_1_r0_x;
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
         /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
         const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_r0_x;
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_d_Gamma_2_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_J_2_zz -
-            rrr_d_Gamma_2_t_2);
+        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
+            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real rrr_Jc_1_zz = m->rrr_Jc_1_zz[i];
-        const real rrr_d_Gamma_1_x = -rrr_h_2_y - inv_rrr_r_1_r0_y*(rrr_Jc_1_zz -
-            rrr_d_Gamma_2_t_2);
+        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
+            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rrr_d_Gamma_2_y = m->rrr_d_Gamma_2_y[i];
+        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
         const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_xy = rrr_d_phi_2_t + inv_rrr_r_1_r0_y*rrr_d_Gamma_2_y -
-            rrr_d_Gamma_2_y*rrr_w_2_t;
+        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_d_c_yy = m->rrr_d_c_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_r0_y*rrr_d_Gamma_1_x + rrr_h_2_y*(rrr_w_2_t -
-            inv_rrr_r_1_r0_y) - rrr_d_c_yy - rrr_d_Gamma_2_x*rrr_w_2_t;
-        const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_y_rrr_axes2_in_base_x*rrr_d_c_xy +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_2;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_d_c_xy;
-        const real rrr_Q_t_5 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_y*rrr_Q_t_3;
-        const real rrr_Q_t_6 = axis_y_rrr_axes2_in_base_x*rrr_Q_t_3 +
-            axis_y_rrr_axes2_in_base_y*rrr_Q_t_4;
-        const real rrr_Q_t_7 = rrr_d_c_yy + 2*axis_y_rrr_axes2_in_base_x*rrr_Q_t_4;
+        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
+        const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
+        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
+            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
+        const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
+            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
+            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
+        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_t_5*rrr_q_in_base_y + rrr_Q_t_6*rrr_q_in_base_x;
-        const real rrr_M_ta_t_2 = rrr_Q_t_6*rrr_q_in_base_y + rrr_Q_t_7*rrr_q_in_base_x;
+        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t*rrr_q_in_base_y + rrr_M_ta_t_2*rrr_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_t_5 : rrr_Q_t_5;  /* total_rrr_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_t_6 : rrr_Q_t_6;  /* total_rrr_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_t_7 : rrr_Q_t_7;  /* total_rrr_yy */
-        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* total_rrr_xz */
-        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* total_rrr_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* total_rrr_zz */
+        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_Q_xx : rrr_Q_xx;  /* M_tt_rrr_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_Q_xy : rrr_Q_xy;  /* M_tt_rrr_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Q_yy : rrr_Q_yy;  /* M_tt_rrr_yy */
+        /* (M_ta) coupling block of M */
+        terms[3*count + k] = add ? terms[3*count + k] + rrr_M_ta_t : rrr_M_ta_t;  /* M_ta_rrr_xz */
+        terms[4*count + k] = add ? terms[4*count + k] + rrr_M_ta_t_2 : rrr_M_ta_t_2;  /* M_ta_rrr_yz */
+        /* (M_aa) rotational block of M */
+        terms[5*count + k] = add ? terms[5*count + k] + rrr_M_aa_t : rrr_M_aa_t;  /* M_aa_rrr_zz */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2278,38 +2309,41 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_rrr_leg1_xx = sums[0*w + k];
+        const real M_tt_rrr_xx = sums[6*w + k];
         const real m_star = m->m_star;
-        const real total_rrr_leg1_xx = sums[0*w + k];
-        const real total_rrr_xx = sums[6*w + k];
-        const real M_tt_xx = m_star - total_rrr_leg1_xx - total_rrr_xx;
-        const real total_rrr_leg1_xy = sums[1*w + k];
-        const real total_rrr_xy = sums[7*w + k];
-        const real M_tt_xy = total_rrr_leg1_xy + total_rrr_xy;
-        const real total_rrr_leg1_yy = sums[2*w + k];
-        const real total_rrr_yy = sums[8*w + k];
-        const real M_tt_yy = m_star - total_rrr_leg1_yy - total_rrr_yy;
+        const real M_tt_xx = M_tt_rrr_leg1_xx + M_tt_rrr_xx + m_star;
+        const real M_tt_rrr_leg1_xy = sums[1*w + k];
+        const real M_tt_rrr_xy = sums[7*w + k];
+        const real M_tt_xy = M_tt_rrr_leg1_xy + M_tt_rrr_xy;
+        const real M_tt_rrr_leg1_yy = sums[2*w + k];
+        const real M_tt_rrr_yy = sums[8*w + k];
+        const real M_tt_yy = M_tt_rrr_leg1_yy + M_tt_rrr_yy + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_y = s[5*w + k];
-        const real total_rrr_leg1_xz = sums[3*w + k];
-        const real total_rrr_xz = sums[9*w + k];
-        const real M_ta_xz = total_rrr_leg1_xz + total_rrr_xz - h_star_in_base_y;
-        const real h_star_in_base_x = s[4*w + k];
-        const real total_rrr_leg1_yz = sums[4*w + k];
-        const real total_rrr_yz = sums[10*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_rrr_leg1_yz - total_rrr_yz;
+        const real M_ta_rrr_leg1_xz = sums[3*w + k];
+        const real M_ta_rrr_xz = sums[9*w + k];
+        const real h_star_y = s[5*w + k];
+        const real M_ta_xz = M_ta_rrr_leg1_xz + M_ta_rrr_xz - h_star_y;
+        const real M_ta_rrr_leg1_yz = sums[4*w + k];
+        const real M_ta_rrr_yz = sums[10*w + k];
+        const real h_star_x = s[4*w + k];
+        const real M_ta_yz = M_ta_rrr_leg1_yz + M_ta_rrr_yz + h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real total_rrr_leg1_zz = sums[5*w + k];
-        const real total_rrr_zz = sums[11*w + k];
-        const real M_aa_zz = -J_star_t_6 - total_rrr_leg1_zz - total_rrr_zz;
+        const real J_star_zz = m->J_star_zz;
+        const real M_aa_rrr_leg1_zz = sums[5*w + k];
+        const real M_aa_rrr_zz = sums[11*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rrr_leg1_zz + M_aa_rrr_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_yy;
+        /* (M_ta) coupling block of M */
         M[2*w + k] = M_ta_xz;
         M[6*w + k] = M_ta_xz;
         M[5*w + k] = M_ta_yz;
         M[7*w + k] = M_ta_yz;
+        /* (M_aa) rotational block of M */
         M[8*w + k] = M_aa_zz;
         t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_yy)) + (M_ta_xz + (M_ta_yz + M_aa_zz));
     }
@@ -2373,22 +2407,22 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real t_dot_y = V_1;
         const real V_2 = V[2*w + k];
         const real omega_z = V_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_t = gravity_y*h_star_in_base_x - gravity_x*h_star_in_base_y;
+        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -2398,7 +2432,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[6*w + k] = omega_z;
         s[7*w + k] = Z_p_x;
         s[8*w + k] = Z_p_y;
-        s[9*w + k] = Z_q_t;
+        s[9*w + k] = Z_q_z;
     }
 }
 
@@ -2413,35 +2447,33 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -2451,24 +2483,6 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -2476,114 +2490,137 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
-        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
         /* (rrr_leg1-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_in_base_y;
-        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y;
+        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y;
-        /* (rrr_leg1-qd_2) rate of joint 2 */
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        /* (rrr_leg1-qd_1) rate of joint 1 */
+        const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t;
         const real rrr_leg1_qd_1 =
-            inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_y);
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_omega_2_z =
-            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_x
-            + axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x)
-            - rrr_leg1_qd_1;
-        /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
-        const real rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t_2;
-        const real rrr_leg1_u_1_t_2 = omega_z*rrr_leg1_S_dot_t;
+            rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y);
         /* (rrr_leg1-W_1) centripetal tensor of link 1 */
         const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
+            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_bias_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
         /* (rrr_leg1-u_1) centripetal acceleration of the connection point */
-        const real rrr_leg1_u_1_tip_x = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_u_1_t_2 -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_u_1_t;
-        const real rrr_leg1_u_1_tip_y = -axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_u_1_t -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_u_1_t_2;
+        const real rrr_leg1_u_1_x = -omega_z*rrr_leg1_S_dot_t_2;
+        const real rrr_leg1_u_1_t = omega_z*rrr_leg1_S_dot_t;
+        const real rrr_leg1_u_1_in_axes2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
+        const real rrr_leg1_u_1_in_axes2_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_u_1_x -
+            axis_x_rrr_leg1_axes2_x*rrr_leg1_u_1_t;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_in_axes2_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
         /* (rrr_leg1-rel_o) remainder without the acceleration in: acceleration of the connection point
            left to the joint accelerations */
-        const real rrr_leg1_rel_o_x = rrr_leg1_u_1_tip_x - rrr_leg1_bias_x;
-        const real rrr_leg1_rel_o_y = rrr_leg1_u_1_tip_y +
+        const real rrr_leg1_rel_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x - rrr_leg1_bias_in_axes2_x;
+        const real rrr_leg1_rel_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
             rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
-        /* (rrr_leg1-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_leg1_qdd_1_o = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_o_x;
+        /* (rrr_leg1-B_1_o) remainder of the acceleration tensor of link 1 */
+        const real rrr_leg1_B_1_o_in_axes1_xy =
+            -rrr_leg1_rel_o_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
         /* (rrr_leg1-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_leg1_alpha_2_o_z = inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_o_y +
-            rrr_leg1_qdd_1_o*rrr_leg1_r_1_r0_x) - rrr_leg1_qdd_1_o;
+        const real rrr_leg1_alpha_2_o_in_axes2_z =
+            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_o_in_axes2_y +
+            rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_o_in_axes1_xy;
         /* (rrr_leg1-acc_2_o) remainder without the acceleration in: acceleration of the reference point
            of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_leg1_acc_2_o_x = rrr_leg1_u_1_tip_x +
-            axis_y_rrr_leg1_axes2_in_base_x*gravity_y - axis_y_rrr_leg1_axes2_in_base_y*gravity_x;
-        const real rrr_leg1_acc_2_o_y = rrr_leg1_u_1_tip_y -
-            axis_y_rrr_leg1_axes2_in_base_x*gravity_x - axis_y_rrr_leg1_axes2_in_base_y*gravity_y;
+        const real rrr_leg1_acc_2_o_in_axes2_x = rrr_leg1_u_1_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*gravity_y - axis_x_rrr_leg1_axes2_x*gravity_x;
+        const real rrr_leg1_acc_2_o_in_axes2_y = rrr_leg1_u_1_in_axes2_y -
+            axis_x_rrr_leg1_axes2_x*gravity_y - axis_y_rrr_leg1_axes2_x*gravity_x;
         /* (rrr_leg1-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 2, about their reference points */
-        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
-        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
-        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
-        const real rrr_leg1_mu_2_o_z = rrr_leg1_J_2_zz*rrr_leg1_alpha_2_o_z +
-            rrr_leg1_acc_2_o_y*rrr_leg1_h_2_x - rrr_leg1_acc_2_o_x*rrr_leg1_h_2_y;
+        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
+        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
+        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+        const real rrr_leg1_mu_2_o_in_axes2_z =
+            rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
+            rrr_leg1_acc_2_o_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
+            rrr_leg1_acc_2_o_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
         /* (rrr_leg1-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 1, about their reference points */
-        const real rrr_leg1_J_1_zz = m->rrr_leg1_J_1_zz[i];
-        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
-        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
-        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
-        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
-        const real rrr_leg1_mu_1_o_z = rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x +
-            rrr_leg1_g_r0_y*rrr_leg1_s_1) - rrr_leg1_J_1_zz*rrr_leg1_qdd_1_o -
-            rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1);
+        const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
+        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
+        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
+        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
+        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
+        const real rrr_leg1_mu_1_o_in_axes1_z =
+            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
+            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) - rrr_leg1_B_1_o_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz
+            - rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+            rrr_leg1_mu_1_t*rrr_leg1_s_1);
         /* (rrr_leg1-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from
            1 outwards, the force at the connection point left out */
-        const real rrr_leg1_N_1_o_z = rrr_leg1_mu_1_o_z + rrr_leg1_mu_2_o_z;
+        const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
+            rrr_leg1_mu_2_o_in_axes2_z;
         /* (rrr_leg1-G_o) remainder without the acceleration in: force at the connection point that
            balances the leg's inertia and weight along all freedoms */
-        const real rrr_leg1_G_o_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_o_z;
+        const real rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
         /* (rrr_leg1-c_o) remainder without the acceleration in: leg force on the platform without
            actuation and without the mass at the connection point */
-        const real rrr_leg1_c_o_x = rrr_leg1_W_2_t*rrr_leg1_h_2_x +
-            rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_y -
-            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_o_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_o_z);
-        const real rrr_leg1_c_o_y = rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_o_t -
-            rrr_leg1_alpha_2_o_z*rrr_leg1_h_2_x;
+        const real rrr_leg1_c_o_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
+            rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+            rrr_leg1_N_1_o_in_axes1_z);
+        const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
+            rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
         /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-        const real rrr_leg1_U_in_base_x = -axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_y -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_x;
-        const real rrr_leg1_U_in_base_y = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_o_x -
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_o_y;
+        const real rrr_leg1_U_x = -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+        const real rrr_leg1_U_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+            axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_leg1_Z_a_t = rrr_leg1_U_in_base_y*rrr_leg1_q_in_base_x -
-            rrr_leg1_U_in_base_x*rrr_leg1_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_U_in_base_x : rrr_leg1_U_in_base_x;  /* total_rrr_leg1_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_U_in_base_y : rrr_leg1_U_in_base_y;  /* total_rrr_leg1_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_Z_a_t : rrr_leg1_Z_a_t;  /* total_rrr_leg1_z */
+        const real rrr_leg1_Z_a_t = rrr_leg1_U_y*rrr_leg1_q_x - rrr_leg1_U_x*rrr_leg1_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_U_x : rrr_leg1_U_x;  /* Z_t_rrr_leg1_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_U_y : rrr_leg1_U_y;  /* Z_t_rrr_leg1_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_Z_a_t : rrr_leg1_Z_a_t;  /* Z_a_rrr_leg1_z */
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[0*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -2608,31 +2645,31 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -2642,124 +2679,129 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
-        /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t_2 = omega_z*rrr_S_dot_t;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_tip_x = axis_y_rrr_axes2_in_base_x*rrr_u_1_t_2 -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t;
-        const real rrr_u_1_tip_y = -axis_y_rrr_axes2_in_base_x*rrr_u_1_t -
-            axis_y_rrr_axes2_in_base_y*rrr_u_1_t_2;
+        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
+            axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
+            axis_x_rrr_axes2_x*rrr_u_1_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_x = rrr_u_1_tip_x - rrr_bias_x;
-        const real rrr_rel_o_y = rrr_u_1_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_r0_y*rrr_rel_o_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
+        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrr_alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rrr_rel_o_y +
-            rrr_qdd_1_o*rrr_r_1_r0_x) - rrr_qdd_1_o;
+        const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
+            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_x = rrr_u_1_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_o_y = rrr_u_1_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_o_z = rrr_J_2_zz*rrr_alpha_2_o_z + rrr_acc_2_o_y*rrr_h_2_x -
-            rrr_acc_2_o_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
+            rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_o_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1_o - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrr_N_1_o_z = rrr_mu_1_o_z + rrr_mu_2_o_z;
+        const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rrr_G_o_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_o_z;
+        const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_o_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_o_t*rrr_r_1_r0_x - rrr_N_1_o_z);
-        const real rrr_c_o_y = rrr_W_2_t*rrr_h_2_y - rrr_G_o_t - rrr_alpha_2_o_z*rrr_h_2_x;
+        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_in_base_x = -axis_y_rrr_axes2_in_base_x*rrr_c_o_y -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_x;
-        const real rrr_U_in_base_y = axis_y_rrr_axes2_in_base_x*rrr_c_o_x -
-            axis_y_rrr_axes2_in_base_y*rrr_c_o_y;
+        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_in_base_y*rrr_q_in_base_x - rrr_U_in_base_x*rrr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_in_base_x : rrr_U_in_base_x;  /* total_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_in_base_y : rrr_U_in_base_y;  /* total_rrr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* total_rrr_z */
+        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_U_x : rrr_U_x;  /* Z_t_rrr_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_U_y : rrr_U_y;  /* Z_t_rrr_y */
+        /* (Z_a) rotational part of Z */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_Z_a_t : rrr_Z_a_t;  /* Z_a_rrr_z */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -2777,20 +2819,22 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[7*w + k];
-        const real total_rrr_leg1_x = sums[0*w + k];
-        const real total_rrr_x = sums[3*w + k];
-        const real Z_t_x = Z_p_x + total_rrr_leg1_x + total_rrr_x;
+        const real Z_t_rrr_leg1_x = sums[0*w + k];
+        const real Z_t_rrr_x = sums[3*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rrr_leg1_x + Z_t_rrr_x;
         const real Z_p_y = s[8*w + k];
-        const real total_rrr_leg1_y = sums[1*w + k];
-        const real total_rrr_y = sums[4*w + k];
-        const real Z_t_y = Z_p_y + total_rrr_leg1_y + total_rrr_y;
+        const real Z_t_rrr_leg1_y = sums[1*w + k];
+        const real Z_t_rrr_y = sums[4*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rrr_leg1_y + Z_t_rrr_y;
         /* (Z_a) rotational part of Z */
-        const real Z_q_t = s[9*w + k];
-        const real total_rrr_leg1_z = sums[2*w + k];
-        const real total_rrr_z = sums[5*w + k];
-        const real Z_a_z = total_rrr_leg1_z + total_rrr_z - Z_q_t;
+        const real Z_a_rrr_leg1_z = sums[2*w + k];
+        const real Z_a_rrr_z = sums[5*w + k];
+        const real Z_q_z = s[9*w + k];
+        const real Z_a_z = Z_a_rrr_leg1_z + Z_a_rrr_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
+        /* (Z_a) rotational part of Z */
         Z[2*w + k] = Z_a_z;
         t->total[k] += Z_t_x + (Z_t_y + Z_a_z);
     }
@@ -2865,35 +2909,33 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -2903,23 +2945,6 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -2927,51 +2952,63 @@ INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
         /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
-        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
+        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
         /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_w_2_t =
-            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*(rrr_leg1_c_2*rrr_leg1_r_1_x
-            + rrr_leg1_r_1_t*rrr_leg1_s_2);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
-        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+        const real rrr_leg1_w_2_in_axes2_x =
+            -rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x
+            + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2);
+        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
         /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_1_z = rrr_leg1_q_in_base_x*rrr_leg1_w_1_t_2 +
-            rrr_leg1_q_in_base_y*rrr_leg1_w_1_t;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_base_x =
-            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
-        const real rrr_leg1_w_2_in_base_y =
-            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
+        const real rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x;
         /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_2_z = rrr_leg1_q_in_base_x*rrr_leg1_w_2_in_base_y -
-            rrr_leg1_q_in_base_y*rrr_leg1_w_2_in_base_x;
-        o[0*count + k] = -rrr_leg1_w_1_t;
-        o[1*count + k] = rrr_leg1_w_1_t_2;
+        const real rrr_leg1_H_a_2_z = rrr_leg1_q_x*rrr_leg1_w_2_y - rrr_leg1_q_y*rrr_leg1_w_2_x;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_leg1_w_1_x;
+        o[1*count + k] = rrr_leg1_w_1_y;
+        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_leg1_H_a_1_z;
-        o[3*count + k] = rrr_leg1_w_2_in_base_x;
-        o[4*count + k] = rrr_leg1_w_2_in_base_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        o[3*count + k] = rrr_leg1_w_2_x;
+        o[4*count + k] = rrr_leg1_w_2_y;
+        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
         o[5*count + k] = rrr_leg1_H_a_2_z;
-        o[8*count + k] = (rrr_leg1_w_1_t + (rrr_leg1_w_1_t_2 + rrr_leg1_H_a_1_z)) +
-            (rrr_leg1_w_2_in_base_x + (rrr_leg1_w_2_in_base_y + rrr_leg1_H_a_2_z));
+        o[8*count + k] = (rrr_leg1_w_1_x + (rrr_leg1_w_1_y + rrr_leg1_H_a_1_z)) + (rrr_leg1_w_2_x
+            + (rrr_leg1_w_2_y + rrr_leg1_H_a_2_z));
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[7*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[6*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -3004,31 +3041,31 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -3038,43 +3075,46 @@ INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
+            rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t);
+        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_t + (rrr_w_1_t_2 + rrr_H_a_1_z);
+        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -3146,13 +3186,13 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real t_ddot_y = A_1;
         const real A_2 = A[2*w + k];
         const real alpha_z = A_2;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
+        const real W_p_xx = -omega_z*omega_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3160,11 +3200,11 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
-        const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
+        const real f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y;
+        const real f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x;
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real J_star_t_6 = m->J_star_t_6;
-        const real mu_p_z = a_t_y*h_star_in_base_x - J_star_t_6*alpha_z - a_t_x*h_star_in_base_y;
+        const real J_star_zz = m->J_star_zz;
+        const real mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -3192,35 +3232,33 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -3230,24 +3268,6 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -3255,141 +3275,160 @@ INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
-        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_w_2_t =
-            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x;
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
         /* (rrr_leg1-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_in_base_y;
-        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y;
+        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y;
-        /* (rrr_leg1-qd_2) rate of joint 2 */
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
+        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+        const real rrr_leg1_w_2_in_axes2_x =
+            -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
+        /* (rrr_leg1-qd_1) rate of joint 1 */
         const real rrr_leg1_qd_1 =
-            inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_y);
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real rrr_leg1_omega_2_z =
-            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_x
-            + axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x)
-            - rrr_leg1_qd_1;
+            rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y);
         /* (rrr_leg1-W_1) centripetal tensor of link 1 */
         const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
+            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_bias_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
-        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
-        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_1_z = rrr_leg1_q_in_base_x*rrr_leg1_w_1_t_2 +
-            rrr_leg1_q_in_base_y*rrr_leg1_w_1_t;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_base_x =
-            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
-        const real rrr_leg1_w_2_in_base_y =
-            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
-        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_2_z = rrr_leg1_q_in_base_x*rrr_leg1_w_2_in_base_y -
-            rrr_leg1_q_in_base_y*rrr_leg1_w_2_in_base_x;
+        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
         /* (rrr_leg1-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_in_base_y;
+        const real rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x;
         /* (rrr_leg1-S_ddot) acceleration of the connection point */
         const real rrr_leg1_S_ddot_x = rrr_leg1_a_p_x - omega_z*rrr_leg1_S_dot_t_2;
         const real rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - omega_z*rrr_leg1_S_dot_t;
-        const real rrr_leg1_S_ddot_tip_x = axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_ddot_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_ddot_y;
-        const real rrr_leg1_S_ddot_tip_y = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_ddot_x +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_ddot_y;
+        const real rrr_leg1_S_ddot_in_axes2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y;
+        const real rrr_leg1_S_ddot_in_axes2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_in_axes2_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
         /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_leg1_rel_x = rrr_leg1_S_ddot_tip_x - rrr_leg1_bias_x;
-        const real rrr_leg1_rel_y = rrr_leg1_S_ddot_tip_y +
+        const real rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x -
+            rrr_leg1_bias_in_axes2_x;
+        const real rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
             rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
-        /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-        const real rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x;
+        /* (rrr_leg1-B_1) acceleration tensor of link 1 */
+        const real rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
+        const real rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y
+            + rrr_leg1_B_1_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
         /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_leg1_acc_2_x = rrr_leg1_S_ddot_tip_x +
-            axis_y_rrr_leg1_axes2_in_base_x*gravity_y - axis_y_rrr_leg1_axes2_in_base_y*gravity_x;
-        const real rrr_leg1_acc_2_y = rrr_leg1_S_ddot_tip_y -
-            axis_y_rrr_leg1_axes2_in_base_x*gravity_x - axis_y_rrr_leg1_axes2_in_base_y*gravity_y;
-        /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
-        const real rrr_leg1_alpha_2_z = inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y +
-            rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x) - rrr_leg1_qdd_1;
+        const real rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*gravity_y - axis_x_rrr_leg1_axes2_x*gravity_x;
+        const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
+            axis_x_rrr_leg1_axes2_x*gravity_y - axis_y_rrr_leg1_axes2_x*gravity_x;
         /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
            */
-        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
-        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
-        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
-        const real rrr_leg1_mu_2_z = rrr_leg1_J_2_zz*rrr_leg1_alpha_2_z +
-            rrr_leg1_acc_2_y*rrr_leg1_h_2_x - rrr_leg1_acc_2_x*rrr_leg1_h_2_y;
+        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
+        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
+        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+        const real rrr_leg1_mu_2_in_axes2_z = rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z
+            + rrr_leg1_acc_2_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
+            rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
         /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
            */
-        const real rrr_leg1_J_1_zz = m->rrr_leg1_J_1_zz[i];
-        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
-        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
-        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
-        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
-        const real rrr_leg1_mu_1_z = rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x +
-            rrr_leg1_g_r0_y*rrr_leg1_s_1) - rrr_leg1_J_1_zz*rrr_leg1_qdd_1 -
-            rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1);
+        const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
+        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
+        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
+        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
+        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
+        const real rrr_leg1_mu_1_in_axes1_z =
+            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
+            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) - rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
+            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+            rrr_leg1_mu_1_t*rrr_leg1_s_1);
         /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
            point left out */
-        const real rrr_leg1_N_1_z = rrr_leg1_mu_1_z + rrr_leg1_mu_2_z;
+        const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
         /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_leg1_G_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_z;
+        const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
         /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_leg1_c_x = rrr_leg1_W_2_t*rrr_leg1_h_2_x +
-            rrr_leg1_alpha_2_z*rrr_leg1_h_2_y -
-            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_z);
-        const real rrr_leg1_c_y = rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_t -
-            rrr_leg1_alpha_2_z*rrr_leg1_h_2_x;
-        const real rrr_leg1_c_in_base_x = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_y +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_x;
-        const real rrr_leg1_c_in_base_y = axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_y -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_x;
+        const real rrr_leg1_c_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
+            rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+            rrr_leg1_N_1_in_axes1_z);
+        const real rrr_leg1_c_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
+            rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
+        const real rrr_leg1_c_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_c_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_in_axes2_y;
+        const real rrr_leg1_c_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_c_in_axes2_y -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_leg1_R_a_t = rrr_leg1_c_in_base_y*rrr_leg1_q_in_base_x -
-            rrr_leg1_c_in_base_x*rrr_leg1_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_c_in_base_x : rrr_leg1_c_in_base_x;  /* total_rrr_leg1_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_c_in_base_y : rrr_leg1_c_in_base_y;  /* total_rrr_leg1_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_R_a_t : rrr_leg1_R_a_t;  /* total_rrr_leg1_z */
-        o[0*count + k] = -rrr_leg1_w_1_t;
-        o[1*count + k] = rrr_leg1_w_1_t_2;
+        const real rrr_leg1_R_a_t = rrr_leg1_c_x*rrr_leg1_q_y - rrr_leg1_c_y*rrr_leg1_q_x;
+        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x;
+        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
+        const real rrr_leg1_H_a_2_z = rrr_leg1_q_x*rrr_leg1_w_2_y - rrr_leg1_q_y*rrr_leg1_w_2_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_c_x : rrr_leg1_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_leg1_c_y : rrr_leg1_c_y;  /* R_t_t_2 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_leg1_R_a_t : rrr_leg1_R_a_t;  /* R_a_rrr_leg1_z */
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_leg1_w_1_x;
+        o[1*count + k] = rrr_leg1_w_1_y;
+        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_leg1_H_a_1_z;
-        o[3*count + k] = rrr_leg1_w_2_in_base_x;
-        o[4*count + k] = rrr_leg1_w_2_in_base_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        o[3*count + k] = rrr_leg1_w_2_x;
+        o[4*count + k] = rrr_leg1_w_2_y;
+        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
         o[5*count + k] = rrr_leg1_H_a_2_z;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[7*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[6*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -3421,31 +3460,31 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -3455,132 +3494,139 @@ INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
-        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1) acceleration tensor of link 1 */
+        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
         /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
-            rrr_acc_2_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
-        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
-        const real rrr_c_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_y +
-            axis_y_rrr_axes2_in_base_y*rrr_c_x;
-        const real rrr_c_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_y -
-            axis_y_rrr_axes2_in_base_x*rrr_c_x;
+        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
+            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
+        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
+            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_in_base_y*rrr_q_in_base_x - rrr_c_in_base_x*rrr_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_in_base_x : rrr_c_in_base_x;  /* total_rrr_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_in_base_y : rrr_c_in_base_y;  /* total_rrr_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* total_rrr_z */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        const real rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_c_x : rrr_c_x;  /* R_t_t_3 */
+        terms[1*count + k] = add ? terms[1*count + k] + rrr_c_y : rrr_c_y;  /* R_t_t_4 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[2*count + k] = add ? terms[2*count + k] + rrr_R_a_t : rrr_R_a_t;  /* R_a_rrr_z */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -3601,21 +3647,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
+        const real R_t_t_3 = sums[3*w + k];
         const real f_p_x = s[10*w + k];
-        const real total_rrr_leg1_x = sums[0*w + k];
-        const real total_rrr_x = sums[3*w + k];
-        const real R_t_x = f_p_x - total_rrr_leg1_x - total_rrr_x;
+        const real R_t_x = f_p_x - R_t_t - R_t_t_3;
+        const real R_t_t_2 = sums[1*w + k];
+        const real R_t_t_4 = sums[4*w + k];
         const real f_p_y = s[11*w + k];
-        const real total_rrr_leg1_y = sums[1*w + k];
-        const real total_rrr_y = sums[4*w + k];
-        const real R_t_y = f_p_y - total_rrr_leg1_y - total_rrr_y;
+        const real R_t_y = f_p_y - R_t_t_2 - R_t_t_4;
         /* (R_a) moment that actuators and external wrench must give */
+        const real R_a_rrr_leg1_z = sums[2*w + k];
+        const real R_a_rrr_z = sums[5*w + k];
         const real mu_p_z = s[12*w + k];
-        const real total_rrr_leg1_z = sums[2*w + k];
-        const real total_rrr_z = sums[5*w + k];
-        const real R_a_z = mu_p_z - total_rrr_leg1_z - total_rrr_z;
+        const real R_a_z = R_a_rrr_leg1_z + R_a_rrr_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
+        /* (R_a) moment that actuators and external wrench must give */
         required[2*w + k] = R_a_z;
     }
 }
@@ -3701,23 +3749,23 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
             R_yx*rrr_leg1_platform_point_x - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -3727,23 +3775,24 @@ INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         /* (rrr_leg1-q_1) displacement of joint 1 */
+        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_q_1 = angle(inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1), inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
             rrr_leg1_Ks_1*rrr_leg1_root_1));
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
         /* (rrr_leg1-q_2) displacement of joint 2 */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
         const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
         const real rrr_leg1_q_2 =
-            angle(-inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1,
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x);
+            angle(-inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1,
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x);
+        /* (rrr_leg1-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_leg1_q_1;
+        /* (rrr_leg1-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_leg1_q_2;
         o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
@@ -3786,21 +3835,21 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg,
             rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -3810,22 +3859,23 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg,
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         /* (rrr-q_1) displacement of joint 1 */
+        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
             inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
         /* (rrr-q_2) displacement of joint 2 */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+        /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
+        /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
@@ -3914,35 +3964,33 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, s
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -3952,23 +4000,6 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, s
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -3976,38 +4007,55 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, s
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
         /* (rrr_leg1-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real rrr_leg1_S_dot_x = t_dot_x - omega_z*rrr_leg1_q_in_base_y;
+        const real rrr_leg1_S_dot_x = t_dot_x - omega_z*rrr_leg1_q_y;
         const real t_dot_y = s[5*w + j];
-        const real rrr_leg1_S_dot_y = t_dot_y + omega_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_S_dot_y = t_dot_y + omega_z*rrr_leg1_q_x;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+        /* (rrr_leg1-qd_1) rate of joint 1 */
+        const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t;
+        const real rrr_leg1_qd_1 = -(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y)/rrr_leg1_r_1_in_axes2_y;
         /* (rrr_leg1-qd_2) rate of joint 2 */
-        const real rrr_leg1_qd_1 = (axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_y)/rrr_leg1_r_1_r0_y;
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
         const real rrr_leg1_qd_2 =
-            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_x
-            + axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_y +
-            rrr_leg1_qd_1*(rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2));
-        o[0*count + k] = -rrr_leg1_qd_1;
+            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+            rrr_leg1_qd_1*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2));
+        /* (rrr_leg1-qd_1) rate of joint 1 */
+        o[0*count + k] = rrr_leg1_qd_1;
+        /* (rrr_leg1-qd_2) rate of joint 2 */
         o[1*count + k] = rrr_leg1_qd_2;
         o[4*count + k] = rrr_leg1_qd_1 + rrr_leg1_qd_2;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[2*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -4036,31 +4084,31 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4070,54 +4118,55 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
         const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_in_base_y;
+        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y;
         const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y;
         /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = (axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y)/rrr_r_1_r0_y;
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_qd_2 =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*(rrr_c_2*rrr_r_1_x +
-            rrr_r_1_t*rrr_s_2));
-        o[0*count + k] = -rrr_qd_1;
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x +
+            rrr_r_1_in_axes1_y*rrr_s_2));
+        /* (rrr-qd_1) rate of joint 1 */
+        o[0*count + k] = rrr_qd_1;
+        /* (rrr-qd_2) rate of joint 2 */
         o[1*count + k] = rrr_qd_2;
         o[4*count + k] = rrr_qd_1 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -4214,35 +4263,33 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -4252,24 +4299,6 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -4277,68 +4306,86 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
-        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
         /* (rrr_leg1-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_in_base_y;
-        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y;
+        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y;
-        /* (rrr_leg1-qd_2) rate of joint 2 */
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        /* (rrr_leg1-qd_1) rate of joint 1 */
+        const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t;
         const real rrr_leg1_qd_1 =
-            inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_y);
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_omega_2_z =
-            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_x
-            + axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x)
-            - rrr_leg1_qd_1;
+            rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y);
         /* (rrr_leg1-W_1) centripetal tensor of link 1 */
         const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_bias_x =
-            -rrr_leg1_omega_2_z*rrr_leg1_omega_2_z*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
+            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_in_base_y;
+        const real rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x;
         /* (rrr_leg1-S_ddot) acceleration of the connection point */
         const real rrr_leg1_S_ddot_x = rrr_leg1_a_p_x - omega_z*rrr_leg1_S_dot_t_2;
         const real rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - omega_z*rrr_leg1_S_dot_t;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_in_axes2_x =
+            -rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x
+            - rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
         /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_leg1_rel_x = axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_ddot_x -
-            rrr_leg1_bias_x - axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_ddot_y;
-        const real rrr_leg1_rel_y = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_ddot_x +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_ddot_y +
+        const real rrr_leg1_rel_in_axes2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x -
+            rrr_leg1_bias_in_axes2_x - axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y;
+        const real rrr_leg1_rel_in_axes2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x -
             rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
         /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-        const real rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x;
-        const real rrr_leg1_qdd_2 = inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y +
-            rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x);
-        o[0*count + k] = -rrr_leg1_qdd_1;
+        const real rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        /* (rrr_leg1-qdd_2) acceleration of joint 2 */
+        const real rrr_leg1_qdd_2 = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
+            rrr_leg1_qdd_1_t*rrr_leg1_r_1_in_axes2_x);
+        /* (rrr_leg1-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = -rrr_leg1_qdd_1_t;
+        /* (rrr_leg1-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rrr_leg1_qdd_2;
-        o[4*count + k] = rrr_leg1_qdd_1 + rrr_leg1_qdd_2;
+        o[4*count + k] = rrr_leg1_qdd_1_t + rrr_leg1_qdd_2;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[2*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -4367,31 +4414,31 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4401,81 +4448,85 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+            rrr_base_frame_xx*rrr_qd_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_omega_2_z*rrr_omega_2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x =
+            -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x - rrr_bias_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_rel_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
-        const real rrr_qdd_2 = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x);
-        o[0*count + k] = -rrr_qdd_1;
+        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-qdd_2) acceleration of joint 2 */
+        const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+        /* (rrr-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = -rrr_qdd_1_t;
+        /* (rrr-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rrr_qdd_2;
-        o[4*count + k] = rrr_qdd_1 + rrr_qdd_2;
+        o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -4572,35 +4623,33 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -4610,24 +4659,6 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_x = rrr_leg1_c_2*rrr_leg1_r_1_x + rrr_leg1_r_1_t*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -4635,133 +4666,154 @@ INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
-        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_w_2_t =
-            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*rrr_leg1_r_1_r0_x;
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
         /* (rrr_leg1-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_in_base_y;
-        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_S_dot_t = omega_z*rrr_leg1_q_y;
+        const real rrr_leg1_S_dot_t_2 = omega_z*rrr_leg1_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_leg1_S_dot_x = t_dot_x - rrr_leg1_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_leg1_S_dot_y = rrr_leg1_S_dot_t_2 + t_dot_y;
-        /* (rrr_leg1-qd_2) rate of joint 2 */
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
+        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+        const real rrr_leg1_w_2_in_axes2_x =
+            -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
+        /* (rrr_leg1-qd_1) rate of joint 1 */
         const real rrr_leg1_qd_1 =
-            inv_rrr_leg1_r_1_r0_y*(axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_y);
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real rrr_leg1_omega_2_z =
-            inv_rrr_leg1_platform_joint_offset_x*(axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_dot_x
-            + axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_dot_y + rrr_leg1_qd_1*rrr_leg1_r_1_r0_x)
-            - rrr_leg1_qd_1;
+            rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_y);
         /* (rrr_leg1-W_1) centripetal tensor of link 1 */
         const real rrr_leg1_W_1_t = rrr_leg1_qd_1*rrr_leg1_qd_1;
+        /* (rrr_leg1-omega_2) angular velocity of link 2 */
+        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
+            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*rrr_leg1_S_dot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_z*rrr_leg1_omega_2_z;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_bias_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
-            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
-        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_base_x =
-            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
-        const real rrr_leg1_w_2_in_base_y =
-            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
+        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
         /* (rrr_leg1-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_in_base_y;
+        const real rrr_leg1_a_p_x = t_ddot_x - alpha_z*rrr_leg1_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_in_base_x;
+        const real rrr_leg1_a_p_y = t_ddot_y + alpha_z*rrr_leg1_q_x;
         /* (rrr_leg1-S_ddot) acceleration of the connection point */
         const real rrr_leg1_S_ddot_x = rrr_leg1_a_p_x - omega_z*rrr_leg1_S_dot_t_2;
         const real rrr_leg1_S_ddot_y = rrr_leg1_a_p_y - omega_z*rrr_leg1_S_dot_t;
-        const real rrr_leg1_S_ddot_tip_x = axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_ddot_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_ddot_y;
-        const real rrr_leg1_S_ddot_tip_y = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_S_ddot_x +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_S_ddot_y;
+        const real rrr_leg1_S_ddot_in_axes2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y;
+        const real rrr_leg1_S_ddot_in_axes2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_S_ddot_y +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_S_ddot_x;
+        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_bias_in_axes2_x = -rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x -
+            rrr_leg1_W_1_t*rrr_leg1_c_2*rrr_leg1_joint2_offset_x;
         /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_leg1_rel_x = rrr_leg1_S_ddot_tip_x - rrr_leg1_bias_x;
-        const real rrr_leg1_rel_y = rrr_leg1_S_ddot_tip_y +
+        const real rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x -
+            rrr_leg1_bias_in_axes2_x;
+        const real rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
             rrr_leg1_W_1_t*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
-        /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-        const real rrr_leg1_qdd_1 = inv_rrr_leg1_r_1_r0_y*rrr_leg1_rel_x;
+        /* (rrr_leg1-B_1) acceleration tensor of link 1 */
+        const real rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
+        const real rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y
+            + rrr_leg1_B_1_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
         /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_leg1_acc_2_x = rrr_leg1_S_ddot_tip_x +
-            axis_y_rrr_leg1_axes2_in_base_x*gravity_y - axis_y_rrr_leg1_axes2_in_base_y*gravity_x;
-        const real rrr_leg1_acc_2_y = rrr_leg1_S_ddot_tip_y -
-            axis_y_rrr_leg1_axes2_in_base_x*gravity_x - axis_y_rrr_leg1_axes2_in_base_y*gravity_y;
-        /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
-        const real rrr_leg1_alpha_2_z = inv_rrr_leg1_platform_joint_offset_x*(rrr_leg1_rel_y +
-            rrr_leg1_qdd_1*rrr_leg1_r_1_r0_x) - rrr_leg1_qdd_1;
+        const real rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*gravity_y - axis_x_rrr_leg1_axes2_x*gravity_x;
+        const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
+            axis_x_rrr_leg1_axes2_x*gravity_y - axis_y_rrr_leg1_axes2_x*gravity_x;
         /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
            */
-        const real rrr_leg1_J_2_zz = m->rrr_leg1_J_2_zz[i];
-        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
-        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
-        const real rrr_leg1_mu_2_z = rrr_leg1_J_2_zz*rrr_leg1_alpha_2_z +
-            rrr_leg1_acc_2_y*rrr_leg1_h_2_x - rrr_leg1_acc_2_x*rrr_leg1_h_2_y;
+        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
+        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
+        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+        const real rrr_leg1_mu_2_in_axes2_z = rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z
+            + rrr_leg1_acc_2_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
+            rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
         /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
            */
-        const real rrr_leg1_J_1_zz = m->rrr_leg1_J_1_zz[i];
-        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
-        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
-        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
-        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
-        const real rrr_leg1_mu_1_z = rrr_leg1_h_1_y*(rrr_leg1_c_1*rrr_leg1_g_r0_x +
-            rrr_leg1_g_r0_y*rrr_leg1_s_1) - rrr_leg1_J_1_zz*rrr_leg1_qdd_1 -
-            rrr_leg1_h_1_x*(rrr_leg1_c_1*rrr_leg1_g_r0_y - rrr_leg1_g_r0_x*rrr_leg1_s_1);
+        const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
+        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
+        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
+        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
+        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
+        const real rrr_leg1_mu_1_in_axes1_z =
+            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
+            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) - rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
+            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+            rrr_leg1_mu_1_t*rrr_leg1_s_1);
         /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
            point left out */
-        const real rrr_leg1_N_1_z = rrr_leg1_mu_1_z + rrr_leg1_mu_2_z;
+        const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
         /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_leg1_G_t = inv_rrr_leg1_platform_joint_offset_x*rrr_leg1_mu_2_z;
+        const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
         /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_leg1_c_x = rrr_leg1_W_2_t*rrr_leg1_h_2_x +
-            rrr_leg1_alpha_2_z*rrr_leg1_h_2_y -
-            inv_rrr_leg1_r_1_r0_y*(rrr_leg1_G_t*rrr_leg1_r_1_r0_x - rrr_leg1_N_1_z);
-        const real rrr_leg1_c_y = rrr_leg1_W_2_t*rrr_leg1_h_2_y - rrr_leg1_G_t -
-            rrr_leg1_alpha_2_z*rrr_leg1_h_2_x;
+        const real rrr_leg1_c_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
+            rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+            rrr_leg1_N_1_in_axes1_z);
+        const real rrr_leg1_c_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
+            rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
         /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_leg1_link2_mass = m->rrr_leg1_link2_mass[i];
-        const real rrr_leg1_c_true_x = rrr_leg1_c_x - rrr_leg1_acc_2_x*rrr_leg1_link2_mass;
-        const real rrr_leg1_c_true_y = rrr_leg1_c_y - rrr_leg1_acc_2_y*rrr_leg1_link2_mass;
-        const real rrr_leg1_c_true_in_base_x = axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_true_y +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_true_x;
-        const real rrr_leg1_c_true_in_base_y = axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_c_true_y -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_c_true_x;
-        o[0*count + k] = rrr_leg1_c_true_in_base_x;
-        o[1*count + k] = rrr_leg1_c_true_in_base_y;
-        o[2*count + k] = -rrr_leg1_w_1_t;
-        o[3*count + k] = rrr_leg1_w_1_t_2;
-        o[4*count + k] = rrr_leg1_w_2_in_base_x;
-        o[5*count + k] = rrr_leg1_w_2_in_base_y;
+        const real rrr_leg1_c_true_in_axes2_x = rrr_leg1_c_in_axes2_x -
+            rrr_leg1_acc_2_in_axes2_x*rrr_leg1_link2_mass;
+        const real rrr_leg1_c_true_in_axes2_y = rrr_leg1_c_in_axes2_y -
+            rrr_leg1_acc_2_in_axes2_y*rrr_leg1_link2_mass;
+        const real rrr_leg1_c_true_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y;
+        const real rrr_leg1_c_true_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
+        /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rrr_leg1_c_true_x;
+        o[1*count + k] = rrr_leg1_c_true_y;
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        o[2*count + k] = rrr_leg1_w_1_x;
+        o[3*count + k] = rrr_leg1_w_1_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        o[4*count + k] = rrr_leg1_w_2_x;
+        o[5*count + k] = rrr_leg1_w_2_y;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[7*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[6*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -4793,31 +4845,31 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -4827,130 +4879,135 @@ INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_t = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_x = rrr_c_2*rrr_r_1_x + rrr_r_1_t*rrr_s_2;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_r_1_t;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_in_base_x = axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy;
-        const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-S_dot) velocity of the connection point */
         const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_in_base_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_in_base_x;
+        const real rrr_S_dot_t = omega_z*rrr_q_y;
+        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
         const real t_dot_x = s[4*w + j];
         const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
         const real t_dot_y = s[5*w + j];
         const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-qd_2) rate of joint 2 */
-        const real rrr_qd_1 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_in_base_y*rrr_S_dot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_dot_y);
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
-        const real rrr_omega_2_z =
-            inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*rrr_S_dot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_dot_y + rrr_qd_1*rrr_r_1_r0_x) - rrr_qd_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        /* (rrr-w_1) reciprocal vector 1 */
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t;
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-qd_1) rate of joint 1 */
+        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
+            axis_y_rrr_axes2_x*rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+        /* (rrr-omega_2) angular velocity of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
+            rrr_qd_1*rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_z*rrr_omega_2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = axis_y_rrr_axes2_in_base_y*inv_rrr_r_1_r0_y;
-        const real rrr_w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_rrr_r_1_r0_y;
+        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_z = s[9*w + j];
         const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_in_base_y;
+        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
         const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_in_base_x;
+        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
         /* (rrr-S_ddot) acceleration of the connection point */
         const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
         const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_tip_x = axis_y_rrr_axes2_in_base_y*rrr_S_ddot_x -
-            axis_y_rrr_axes2_in_base_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*rrr_S_ddot_x +
-            axis_y_rrr_axes2_in_base_y*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
+            axis_y_rrr_axes2_x*rrr_S_ddot_y;
+        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*rrr_S_ddot_x;
+        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_x = rrr_S_ddot_tip_x - rrr_bias_x;
-        const real rrr_rel_y = rrr_S_ddot_tip_y + rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1 = inv_rrr_r_1_r0_y*rrr_rel_x;
+        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        /* (rrr-B_1) acceleration tensor of link 1 */
+        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        /* (rrr-alpha_2) angular acceleration of link 2 */
+        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
         /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_x = rrr_S_ddot_tip_x + axis_y_rrr_axes2_in_base_x*gravity_y -
-            axis_y_rrr_axes2_in_base_y*gravity_x;
-        const real rrr_acc_2_y = rrr_S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
-            axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_z = inv_rrr_platform_joint_offset_x*(rrr_rel_y +
-            rrr_qdd_1*rrr_r_1_r0_x) - rrr_qdd_1;
+        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
+            axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
+            axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_zz = m->rrr_J_2_zz[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
-        const real rrr_mu_2_z = rrr_J_2_zz*rrr_alpha_2_z + rrr_acc_2_y*rrr_h_2_x -
-            rrr_acc_2_x*rrr_h_2_y;
+        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
         /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_zz = m->rrr_J_1_zz[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_mu_1_z = rrr_h_1_y*(rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1) -
-            rrr_J_1_zz*rrr_qdd_1 - rrr_h_1_x*(rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1);
+        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
         /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
-        const real rrr_N_1_z = rrr_mu_1_z + rrr_mu_2_z;
+        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rrr_G_t = inv_rrr_platform_joint_offset_x*rrr_mu_2_z;
+        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_x = rrr_W_2_t*rrr_h_2_x + rrr_alpha_2_z*rrr_h_2_y -
-            inv_rrr_r_1_r0_y*(rrr_G_t*rrr_r_1_r0_x - rrr_N_1_z);
-        const real rrr_c_y = rrr_W_2_t*rrr_h_2_y - rrr_G_t - rrr_alpha_2_z*rrr_h_2_x;
+        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_x = rrr_c_x - rrr_acc_2_x*rrr_link2_mass;
-        const real rrr_c_true_y = rrr_c_y - rrr_acc_2_y*rrr_link2_mass;
-        const real rrr_c_true_in_base_x = axis_y_rrr_axes2_in_base_x*rrr_c_true_y +
-            axis_y_rrr_axes2_in_base_y*rrr_c_true_x;
-        const real rrr_c_true_in_base_y = axis_y_rrr_axes2_in_base_y*rrr_c_true_y -
-            axis_y_rrr_axes2_in_base_x*rrr_c_true_x;
-        o[0*count + k] = rrr_c_true_in_base_x;
-        o[1*count + k] = rrr_c_true_in_base_y;
-        o[2*count + k] = -rrr_w_1_t;
-        o[3*count + k] = rrr_w_1_t_2;
+        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = rrr_c_true_x;
+        o[1*count + k] = rrr_c_true_y;
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[2*count + k] = rrr_w_1_x;
+        o[3*count + k] = rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -5000,11 +5057,12 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
-            gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x -
+            R_yx*h_star_in_platform_y) + gravity_y*(R_xx*h_star_in_platform_y +
+            R_yx*h_star_in_platform_x + m_star*t_y);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
@@ -5034,23 +5092,23 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, siz
             R_yx*rrr_leg1_platform_point_x - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -5060,18 +5118,6 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, siz
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -5079,24 +5125,40 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, siz
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
         /* (potential) potential energy */
-        const real rrr_leg1_b_r0_x = m->rrr_leg1_b_r0_x[i];
-        const real rrr_leg1_b_r0_y = m->rrr_leg1_b_r0_y[i];
-        const real rrr_leg1_g_r0_x = m->rrr_leg1_g_r0_x[i];
-        const real rrr_leg1_g_r0_y = m->rrr_leg1_g_r0_y[i];
-        const real rrr_leg1_h_1_x = m->rrr_leg1_h_1_x[i];
-        const real rrr_leg1_h_1_y = m->rrr_leg1_h_1_y[i];
-        const real rrr_leg1_h_2_x = m->rrr_leg1_h_2_x[i];
-        const real rrr_leg1_h_2_y = m->rrr_leg1_h_2_y[i];
+        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
+        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
+        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
+        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
         const real rrr_leg1_link1_mass = m->rrr_leg1_link1_mass[i];
-        const real rrr_leg1_potential_t = (rrr_leg1_c_1*rrr_leg1_g_r0_x +
-            rrr_leg1_g_r0_y*rrr_leg1_s_1)*(rrr_leg1_h_1_x + rrr_leg1_c_2*rrr_leg1_h_2_x +
-            rrr_leg1_h_2_y*rrr_leg1_s_2 + rrr_leg1_link1_mass*(rrr_leg1_b_r0_x*rrr_leg1_c_1 +
-            rrr_leg1_b_r0_y*rrr_leg1_s_1)) + (rrr_leg1_c_1*rrr_leg1_g_r0_y -
-            rrr_leg1_g_r0_x*rrr_leg1_s_1)*(rrr_leg1_h_1_y + rrr_leg1_c_2*rrr_leg1_h_2_y +
-            rrr_leg1_link1_mass*(rrr_leg1_b_r0_y*rrr_leg1_c_1 - rrr_leg1_b_r0_x*rrr_leg1_s_1) -
-            rrr_leg1_h_2_x*rrr_leg1_s_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_potential_t : rrr_leg1_potential_t;  /* total_rrr_leg1 */
+        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
+        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
+        const real rrr_leg1_potential_t = m->rrr_leg1_potential_t[i];
+        const real rrr_leg1_potential_t_2 = m->rrr_leg1_potential_t_2[i];
+        const real rrr_leg1_potential_t_3 = (rrr_leg1_c_1*rrr_leg1_mu_1_t +
+            rrr_leg1_mu_1_t_2*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_x +
+            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
+            rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t +
+            rrr_leg1_potential_t_2*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2) +
+            (rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+            rrr_leg1_mu_1_t*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_y +
+            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
+            rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t_2 -
+            rrr_leg1_potential_t*rrr_leg1_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + -rrr_leg1_potential_t_3 : -rrr_leg1_potential_t_3;  /* potential_rrr_leg1 */
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
             TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t);
@@ -5134,21 +5196,21 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
             rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -5158,38 +5220,41 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
         /* (potential) potential energy */
-        const real rrr_b_r0_x = m->rrr_b_r0_x[i];
-        const real rrr_b_r0_y = m->rrr_b_r0_y[i];
-        const real rrr_g_r0_x = m->rrr_g_r0_x[i];
-        const real rrr_g_r0_y = m->rrr_g_r0_y[i];
-        const real rrr_h_1_x = m->rrr_h_1_x[i];
-        const real rrr_h_1_y = m->rrr_h_1_y[i];
-        const real rrr_h_2_x = m->rrr_h_2_x[i];
-        const real rrr_h_2_y = m->rrr_h_2_y[i];
+        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_link1_mass = m->rrr_link1_mass[i];
-        const real rrr_potential_t = (rrr_c_1*rrr_g_r0_x + rrr_g_r0_y*rrr_s_1)*(rrr_h_1_x +
-            rrr_c_2*rrr_h_2_x + rrr_h_2_y*rrr_s_2 + rrr_link1_mass*(rrr_b_r0_x*rrr_c_1 +
-            rrr_b_r0_y*rrr_s_1)) + (rrr_c_1*rrr_g_r0_y - rrr_g_r0_x*rrr_s_1)*(rrr_h_1_y +
-            rrr_c_2*rrr_h_2_y + rrr_link1_mass*(rrr_b_r0_y*rrr_c_1 - rrr_b_r0_x*rrr_s_1) -
-            rrr_h_2_x*rrr_s_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t : rrr_potential_t;  /* total_rrr */
+        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+        const real rrr_potential_t = m->rrr_potential_t[i];
+        const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
+        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
+            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*rrr_s_1));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_potential_t_3 : rrr_potential_t_3;  /* potential_t_2 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
         o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
@@ -5208,10 +5273,11 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 {
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
+        const real potential_rrr_leg1 = sums[0*w + k];
         const real potential_t = s[4*w + k];
-        const real total_rrr = sums[1*w + k];
-        const real total_rrr_leg1 = sums[0*w + k];
-        const real potential_ = -potential_t - total_rrr - total_rrr_leg1;
+        const real potential_t_2 = sums[1*w + k];
+        const real potential_ = potential_rrr_leg1 - potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5255,6 +5321,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[1*w + k] = t_y;
         s[2*w + k] = R_xx;
         s[3*w + k] = R_yx;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -5272,35 +5339,33 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, siz
         const real R_yx = s[3*w + j];
         const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real rrr_leg1_q_in_base_x = R_xx*rrr_leg1_platform_point_x -
-            R_yx*rrr_leg1_platform_point_y;
-        const real rrr_leg1_q_in_base_y = R_xx*rrr_leg1_platform_point_y +
-            R_yx*rrr_leg1_platform_point_x;
+        const real rrr_leg1_q_x = R_xx*rrr_leg1_platform_point_x - R_yx*rrr_leg1_platform_point_y;
+        const real rrr_leg1_q_y = R_xx*rrr_leg1_platform_point_y + R_yx*rrr_leg1_platform_point_x;
         const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_q_in_base_x + t_x - rrr_leg1_base_point_x;
+        const real rrr_leg1_S_x = rrr_leg1_q_x + t_x - rrr_leg1_base_point_x;
         const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_q_in_base_y + t_y - rrr_leg1_base_point_y;
+        const real rrr_leg1_S_y = rrr_leg1_q_y + t_y - rrr_leg1_base_point_y;
         /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
            beyond joint 1 */
-        const real rrr_leg1_Kd_1_t = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
         const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1_t_4 = m->rrr_leg1_Kd_1_t_4[i];
-        const real rrr_leg1_Kd_1 = R(0.5)*rrr_leg1_Kd_1_t + rrr_leg1_Kd_1_t_2 - rrr_leg1_Kd_1_t_4;
+        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
         /* (rrr_leg1-px_1) component along the reference direction */
         const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
         const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
         const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
             rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-py_1) component across the reference direction */
         const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
             rrr_leg1_S_y*rrr_leg1_base_frame_yy;
+        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
         /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
         /* (rrr_leg1-rho2_1) squared amplitude */
@@ -5310,23 +5375,6 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, siz
         /* (rrr_leg1-root_1) root, with the sign of the branch */
         const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
         const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_Kd_1_t_5 = m->inv_rrr_leg1_Kd_1_t_5[i];
-        const real rrr_leg1_x_2_x = inv_rrr_leg1_Kd_1_t_5*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x -
-            rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_Kd_1_t_7 = m->inv_rrr_leg1_Kd_1_t_7[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_Kd_1_t_7*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            inv_rrr_leg1_Kd_1_t_5*inv_rrr_leg1_Kd_1_t_7*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_t = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_r0_y = rrr_leg1_r_1_x*rrr_leg1_s_2 - rrr_leg1_c_2*rrr_leg1_r_1_t;
         /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
         const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
@@ -5334,73 +5382,85 @@ INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, siz
         /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
             rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+        const real rrr_leg1_x_2_in_axes1_x =
+            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+        const real rrr_leg1_c_2 =
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_leg1_s_2 =
+            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
         /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_leg1_axes2_r1_x = rrr_leg1_c_1*rrr_leg1_s_2 -
-            rrr_leg1_c_2*rrr_leg1_s_1;
-        const real axis_y_rrr_leg1_axes2_r1_y = rrr_leg1_c_1*rrr_leg1_c_2 +
-            rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_in_base_x =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_xx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_xy;
-        const real axis_y_rrr_leg1_axes2_in_base_y =
-            axis_y_rrr_leg1_axes2_r1_x*rrr_leg1_base_frame_yx +
-            axis_y_rrr_leg1_axes2_r1_y*rrr_leg1_base_frame_yy;
-        const real inv_rrr_leg1_r_1_r0_y = 1/rrr_leg1_r_1_r0_y;
+        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
+            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
+        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
         /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real inv_rrr_leg1_platform_joint_offset_x = m->inv_rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_w_2_t =
-            inv_rrr_leg1_platform_joint_offset_x*inv_rrr_leg1_r_1_r0_y*(rrr_leg1_c_2*rrr_leg1_r_1_x
-            + rrr_leg1_r_1_t*rrr_leg1_s_2);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_r_1_r0_y;
-        const real rrr_leg1_w_1_t_2 = axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_r_1_r0_y;
-        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_1_z = rrr_leg1_q_in_base_x*rrr_leg1_w_1_t_2 +
-            rrr_leg1_q_in_base_y*rrr_leg1_w_1_t;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_base_x =
-            axis_y_rrr_leg1_axes2_in_base_x*inv_rrr_leg1_platform_joint_offset_x +
-            axis_y_rrr_leg1_axes2_in_base_y*rrr_leg1_w_2_t;
-        const real rrr_leg1_w_2_in_base_y =
-            axis_y_rrr_leg1_axes2_in_base_y*inv_rrr_leg1_platform_joint_offset_x -
-            axis_y_rrr_leg1_axes2_in_base_x*rrr_leg1_w_2_t;
-        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrr_leg1_H_a_2_z = rrr_leg1_q_in_base_x*rrr_leg1_w_2_in_base_y -
-            rrr_leg1_q_in_base_y*rrr_leg1_w_2_in_base_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rrr_leg1_spread_t = b_c_x - rrr_leg1_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rrr_leg1_spread_t_2 = b_c_y - rrr_leg1_platform_point_y;
-        const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
-            rrr_leg1_spread_t_2*rrr_leg1_spread_t_2;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_pivot_size = magnitude(rrr_leg1_rho2_1);
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_pivot_size_2 = magnitude(rrr_leg1_r_1_r0_y);
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+        const real rrr_leg1_w_2_in_axes2_x =
+            -rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x
+            + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2);
+        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
         /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_rrr_leg1_rho2_1_t_4 = m->inv_rrr_leg1_rho2_1_t_4[i];
+        const real rrr_leg1_pivot_size = magnitude(rrr_leg1_rho2_1);
+        const real rrr_leg1_pivot_size_2 = magnitude(rrr_leg1_r_1_in_axes2_y);
+        const real inv_rrr_leg1_rho2_1_t = m->inv_rrr_leg1_rho2_1_t[i];
         const real inv_rrr_leg1_size = m->inv_rrr_leg1_size[i];
-        const real rrr_leg1_least_pivots =
-            lesser(root(inv_rrr_leg1_rho2_1_t_4*rrr_leg1_pivot_size),
+        const real rrr_leg1_least_pivots = lesser(root(inv_rrr_leg1_rho2_1_t*rrr_leg1_pivot_size),
             inv_rrr_leg1_size*rrr_leg1_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_spread_t_3 : rrr_leg1_spread_t_3;  /* total_rrr_leg1 */
-        o[0*count + k] = -rrr_leg1_w_1_t;
-        o[1*count + k] = rrr_leg1_w_1_t_2;
+        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_leg1_H_a_1_z = rrr_leg1_q_x*rrr_leg1_w_1_y - rrr_leg1_q_y*rrr_leg1_w_1_x;
+        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
+        const real rrr_leg1_H_a_2_z = rrr_leg1_q_x*rrr_leg1_w_2_y - rrr_leg1_q_y*rrr_leg1_w_2_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_leg1_spread_t = b_c_in_platform_x - rrr_leg1_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_leg1_spread_t_2 = b_c_in_platform_y - rrr_leg1_platform_point_y;
+        const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
+            rrr_leg1_spread_t_2*rrr_leg1_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_leg1_spread_t_3 : rrr_leg1_spread_t_3;  /* spread_rrr_leg1 */
+        /* (rrr_leg1-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_leg1_w_1_x;
+        o[1*count + k] = rrr_leg1_w_1_y;
+        /* (rrr_leg1-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_leg1_H_a_1_z;
-        o[3*count + k] = rrr_leg1_w_2_in_base_x;
-        o[4*count + k] = rrr_leg1_w_2_in_base_y;
+        /* (rrr_leg1-w_2) reciprocal vector 2 */
+        o[3*count + k] = rrr_leg1_w_2_x;
+        o[4*count + k] = rrr_leg1_w_2_y;
+        /* (rrr_leg1-H_a_2) moment of the column's unit force about the platform origin */
         o[5*count + k] = rrr_leg1_H_a_2_z;
+        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[6*count + k] = rrr_leg1_least_pivots;
         o[7*count + k] = rrr_leg1_disc_1;
-        o[10*count + k] = ((rrr_leg1_w_1_t + rrr_leg1_w_1_t_2) + (rrr_leg1_H_a_1_z +
-            rrr_leg1_w_2_in_base_x)) + ((rrr_leg1_w_2_in_base_y + rrr_leg1_H_a_2_z) +
-            (rrr_leg1_least_pivots + rrr_leg1_disc_1));
+        o[10*count + k] = ((rrr_leg1_w_1_x + rrr_leg1_w_1_y) + (rrr_leg1_H_a_1_z +
+            rrr_leg1_w_2_x)) + ((rrr_leg1_w_2_y + rrr_leg1_H_a_2_z) + (rrr_leg1_least_pivots +
+            rrr_leg1_disc_1));
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
         o[9*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(-rrr_leg1_r_1_r0_y) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
         o[8*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
     }
@@ -5435,31 +5495,31 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real R_yx = s[3*w + j];
         const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
         const real rrr_base_point_x = m->rrr_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_in_base_x + t_x - rrr_base_point_x;
+        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
         const real rrr_base_point_y = m->rrr_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_in_base_y + t_y - rrr_base_point_y;
+        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
         /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
-        const real rrr_Kd_1_t = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
         const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1_t_4 = m->rrr_Kd_1_t_4[i];
-        const real rrr_Kd_1 = R(0.5)*rrr_Kd_1_t + rrr_Kd_1_t_2 - rrr_Kd_1_t_4;
+        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
         /* (rrr-px_1) component along the reference direction */
         const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
         const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
         const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-py_1) component across the reference direction */
         const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
+        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
         /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
         const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
         /* (rrr-rho2_1) squared amplitude */
@@ -5469,63 +5529,67 @@ INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (rrr-root_1) root, with the sign of the branch */
         const real rrr_branch_1 = m->rrr_branch_1[i];
         const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_Kd_1_t_5 = m->inv_rrr_Kd_1_t_5[i];
-        const real rrr_x_2_x = inv_rrr_Kd_1_t_5*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_Kd_1_t_7 = m->inv_rrr_Kd_1_t_7[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_Kd_1_t_7*rrr_platform_joint_offset_x*rrr_x_2_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            inv_rrr_Kd_1_t_5*inv_rrr_Kd_1_t_7*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_r0_y = rrr_r_1_x*rrr_s_2 - rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2;
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
         const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
         const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+        /* (rrr-x_2) from the origin of joint 2 to the connection point */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real rrr_s_2 =
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        /* (rrr-r_1) from joint 1 to the connection point, along the links */
+        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
+            rrr_r_1_in_axes1_x*rrr_s_2;
         /* (rrr-w_1) reciprocal vector 1 */
-        const real axis_y_rrr_axes2_r1_x = rrr_c_1*rrr_s_2 - rrr_c_2*rrr_s_1;
-        const real axis_y_rrr_axes2_r1_y = rrr_c_1*rrr_c_2 + rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_r0_y = 1/rrr_r_1_r0_y;
-        const real rrr_w_1_t = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
-        const real rrr_w_1_t_2 = inv_rrr_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
-            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_in_base_x*rrr_w_1_t_2 + rrr_q_in_base_y*rrr_w_1_t;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rrr_spread_t = b_c_x - rrr_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rrr_spread_t_2 = b_c_y - rrr_platform_point_y;
-        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_r0_y);
+        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
+            rrr_base_frame_yx*rrr_w_1_t);
+        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
+            rrr_base_frame_xx*rrr_w_1_t);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_rrr_rho2_1_t_4 = m->inv_rrr_rho2_1_t_4[i];
+        const real rrr_pivot_size = magnitude(rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
-        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t_4*rrr_pivot_size),
+        const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* total_rrr */
-        o[0*count + k] = -rrr_w_1_t;
-        o[1*count + k] = rrr_w_1_t_2;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
+        const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rrr_spread_t_3 : rrr_spread_t_3;  /* spread_rrr */
+        /* (rrr-w_1) reciprocal vector 1 */
+        o[0*count + k] = rrr_w_1_x;
+        o[1*count + k] = rrr_w_1_y;
+        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
+        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = rrr_least_pivots;
         o[4*count + k] = rrr_disc_1;
-        o[7*count + k] = (rrr_w_1_t + rrr_w_1_t_2) + (rrr_H_a_1_z + (rrr_least_pivots +
+        o[7*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_H_a_1_z + (rrr_least_pivots +
             rrr_disc_1));
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
         o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(-rrr_r_1_r0_y) > TOLERANCE*rrr_size);
+            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
         o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
     }
 }
@@ -5549,9 +5613,10 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
-        const real total_rrr = sums[1*w + k];
-        const real total_rrr_leg1 = sums[0*w + k];
-        const real spread_ = root(R(0.5)*total_rrr + R(0.5)*total_rrr_leg1);
+        const real spread_rrr = sums[1*w + k];
+        const real spread_rrr_leg1 = sums[0*w + k];
+        const real spread_ = root(R(0.5)*spread_rrr + R(0.5)*spread_rrr_leg1);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -500,19 +500,19 @@ int stewart_prepare(const stewart_params *params, stewart_model *model)
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_ups = 0;
-    real total_ups_x = 0;
-    real total_ups_y = 0;
-    real total_ups_z = 0;
-    real total_ups_xx = 0;
-    real total_ups_xy = 0;
-    real total_ups_xz = 0;
-    real total_ups_yy = 0;
-    real total_ups_yz = 0;
-    real total_ups_zz = 0;
-    real total_ups_x_2 = 0;
-    real total_ups_y_2 = 0;
-    real total_ups_z_2 = 0;
+    real m_star_ups = 0;
+    real h_star_ups_in_platform_x = 0;
+    real h_star_ups_in_platform_y = 0;
+    real h_star_ups_in_platform_z = 0;
+    real J_star_ups_in_platform_xx = 0;
+    real J_star_ups_in_platform_xy = 0;
+    real J_star_ups_in_platform_xz = 0;
+    real J_star_ups_in_platform_yy = 0;
+    real J_star_ups_in_platform_yz = 0;
+    real J_star_ups_in_platform_zz = 0;
+    real b_c_ups_in_platform_x = 0;
+    real b_c_ups_in_platform_y = 0;
+    real b_c_ups_in_platform_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -591,40 +591,57 @@ int stewart_prepare(const stewart_params *params, stewart_model *model)
         const real ups_branch_1 = signs_ups_branch_1[own];
         static const signed char signs_ups_branch_2[] = {1, 1, 1, 1, 1, 1};
         const real ups_branch_2 = signs_ups_branch_2[own];
+        /* (ups-h_2) first moment of link 2 about the origin of link 2 */
+        const real ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
+        const real ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
+        const real ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
         /* (ups-h_3) first moment of link 3 about the connection point */
-        const real ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass;
-        /* (ups-J_2) inertia tensor of link 2 about the origin of link 2 */
-        const real ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
-        const real ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
-        const real ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
-        const real ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3;
-        /* (ups-J_3) inertia tensor of link 3 about the connection point */
-        const real ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
-        const real ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
-        const real ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
-        const real ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3;
+        const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
+        const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
+        const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx;
+        const real ups_acc_3_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy;
+        const real ups_acc_3_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz;
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
-        const real ups_J_group_2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
-            ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t - ups_J_3_t_4);
-        const real ups_J_group_2_xy =
+        const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
+        const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
+        const real ups_J_group_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
+        const real ups_J_group_2_t_4 = ups_J_group_2_t + ups_J_group_2_t_2 + ups_J_group_2_t_3;
+        const real ups_J_group_2_t_5 = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
+        const real ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
+        const real ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
+        const real ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7;
+        const real ups_J_group_2_in_axes2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+            ups_link2_mass*(ups_J_group_2_t - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8);
+        const real ups_J_group_2_in_axes2_xy =
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real ups_J_group_2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+        const real ups_J_group_2_in_axes2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_J_group_2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
-            ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_3 -
-            ups_J_3_t_4);
-        const real ups_J_group_2_yz =
+        const real ups_J_group_2_in_axes2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link2_mass*(ups_J_group_2_t_3 - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8);
+        const real ups_J_group_2_in_axes2_yz =
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real ups_J_group_2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
-            ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_2 -
-            ups_J_3_t_4);
+        const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
+        /* (ups-trace_J_2) half the trace of that inertia tensor */
+        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_in_axes2_xx +
+            R(0.5)*ups_J_group_2_in_axes2_yy + R(0.5)*ups_J_group_2_in_axes2_zz;
+        /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
+        const real ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx;
+        const real ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy;
+        const real ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz;
         /* (h_star) first moment about the platform origin */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -640,44 +657,25 @@ int stewart_prepare(const stewart_params *params, stewart_model *model)
         const real ups_J_star_t_8 = ups_link3_mass*(ups_J_star_t_2 - ups_J_star_t_4);
         const real ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
         const real ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4);
-        /* (ups-h_2) first moment of link 2 about the origin of link 2 */
-        const real ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_g_r0_y = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_g_r0_z = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
-        /* (ups-trace_J_2) half the trace of that inertia tensor */
-        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_xx + R(0.5)*ups_J_group_2_yy +
-            R(0.5)*ups_J_group_2_zz;
-        /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx;
-        const real ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy;
-        const real ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz;
         /* (potential) potential energy */
-        const real ups_b_r0_x = ups_base_frame_xx*ups_base_point_x +
+        const real ups_potential_t = ups_base_frame_xx*ups_base_point_x +
             ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_b_r0_y = ups_base_frame_xy*ups_base_point_x +
+        const real ups_potential_t_2 = ups_base_frame_xy*ups_base_point_x +
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_b_r0_z = ups_base_frame_xz*ups_base_point_x +
+        const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->ups_J_group_2_xx[leg] = ups_J_group_2_xx;
-        model->ups_J_group_2_xy[leg] = ups_J_group_2_xy;
-        model->ups_J_group_2_xz[leg] = ups_J_group_2_xz;
-        model->ups_J_group_2_yy[leg] = ups_J_group_2_yy;
-        model->ups_J_group_2_yz[leg] = ups_J_group_2_yz;
-        model->ups_J_group_2_zz[leg] = ups_J_group_2_zz;
-        model->ups_Sigma_2_xx[leg] = ups_Sigma_2_xx;
-        model->ups_Sigma_2_yy[leg] = ups_Sigma_2_yy;
-        model->ups_Sigma_2_zz[leg] = ups_Sigma_2_zz;
-        model->ups_b_r0_x[leg] = ups_b_r0_x;
-        model->ups_b_r0_y[leg] = ups_b_r0_y;
-        model->ups_b_r0_z[leg] = ups_b_r0_z;
+        model->ups_J_group_2_in_axes2_xx[leg] = ups_J_group_2_in_axes2_xx;
+        model->ups_J_group_2_in_axes2_xy[leg] = ups_J_group_2_in_axes2_xy;
+        model->ups_J_group_2_in_axes2_xz[leg] = ups_J_group_2_in_axes2_xz;
+        model->ups_J_group_2_in_axes2_yy[leg] = ups_J_group_2_in_axes2_yy;
+        model->ups_J_group_2_in_axes2_yz[leg] = ups_J_group_2_in_axes2_yz;
+        model->ups_J_group_2_in_axes2_zz[leg] = ups_J_group_2_in_axes2_zz;
+        model->ups_Sigma_2_in_axes2_xx[leg] = ups_Sigma_2_in_axes2_xx;
+        model->ups_Sigma_2_in_axes2_yy[leg] = ups_Sigma_2_in_axes2_yy;
+        model->ups_Sigma_2_in_axes2_zz[leg] = ups_Sigma_2_in_axes2_zz;
+        model->ups_acc_3_t[leg] = ups_acc_3_t;
+        model->ups_acc_3_t_2[leg] = ups_acc_3_t_2;
+        model->ups_acc_3_t_3[leg] = ups_acc_3_t_3;
         model->ups_base_frame_xx[leg] = ups_base_frame_xx;
         model->ups_base_frame_xy[leg] = ups_base_frame_xy;
         model->ups_base_frame_xz[leg] = ups_base_frame_xz;
@@ -692,76 +690,82 @@ int stewart_prepare(const stewart_params *params, stewart_model *model)
         model->ups_base_point_z[leg] = ups_base_point_z;
         model->ups_branch_1[leg] = ups_branch_1;
         model->ups_branch_2[leg] = ups_branch_2;
-        model->ups_g_r0_x[leg] = ups_g_r0_x;
-        model->ups_g_r0_y[leg] = ups_g_r0_y;
-        model->ups_g_r0_z[leg] = ups_g_r0_z;
-        model->ups_h_2_x[leg] = ups_h_2_x;
-        model->ups_h_2_y[leg] = ups_h_2_y;
-        model->ups_h_2_z[leg] = ups_h_2_z;
-        model->ups_h_3_x[leg] = ups_h_3_x;
-        model->ups_h_3_y[leg] = ups_h_3_y;
-        model->ups_h_3_z[leg] = ups_h_3_z;
+        model->ups_h_2_in_spec2_x[leg] = ups_h_2_in_spec2_x;
+        model->ups_h_2_in_spec2_y[leg] = ups_h_2_in_spec2_y;
+        model->ups_h_2_in_spec2_z[leg] = ups_h_2_in_spec2_z;
+        model->ups_h_3_in_spec2_x[leg] = ups_h_3_in_spec2_x;
+        model->ups_h_3_in_spec2_y[leg] = ups_h_3_in_spec2_y;
+        model->ups_h_3_in_spec2_z[leg] = ups_h_3_in_spec2_z;
         model->ups_link2_mass[leg] = ups_link2_mass;
         model->ups_link3_mass[leg] = ups_link3_mass;
         model->ups_platform_point_x[leg] = ups_platform_point_x;
         model->ups_platform_point_y[leg] = ups_platform_point_y;
         model->ups_platform_point_z[leg] = ups_platform_point_z;
-        total_ups += leg < 6 ? ups_link3_mass : 0;
-        total_ups_x += leg < 6 ? ups_h_star_t : 0;
-        total_ups_y += leg < 6 ? ups_h_star_t_2 : 0;
-        total_ups_z += leg < 6 ? ups_h_star_t_3 : 0;
-        total_ups_xx += leg < 6 ? ups_J_star_t_5 : 0;
-        total_ups_xy += leg < 6 ? ups_J_star_t_6 : 0;
-        total_ups_xz += leg < 6 ? ups_J_star_t_7 : 0;
-        total_ups_yy += leg < 6 ? ups_J_star_t_8 : 0;
-        total_ups_yz += leg < 6 ? ups_J_star_t_9 : 0;
-        total_ups_zz += leg < 6 ? ups_J_star_t_10 : 0;
-        total_ups_x_2 += leg < 6 ? ups_platform_point_x : 0;
-        total_ups_y_2 += leg < 6 ? ups_platform_point_y : 0;
-        total_ups_z_2 += leg < 6 ? ups_platform_point_z : 0;
+        model->ups_potential_t[leg] = ups_potential_t;
+        model->ups_potential_t_2[leg] = ups_potential_t_2;
+        model->ups_potential_t_3[leg] = ups_potential_t_3;
+        m_star_ups += leg < 6 ? ups_link3_mass : 0;
+        h_star_ups_in_platform_x += leg < 6 ? ups_h_star_t : 0;
+        h_star_ups_in_platform_y += leg < 6 ? ups_h_star_t_2 : 0;
+        h_star_ups_in_platform_z += leg < 6 ? ups_h_star_t_3 : 0;
+        J_star_ups_in_platform_xx += leg < 6 ? -ups_J_star_t_5 : 0;
+        J_star_ups_in_platform_xy += leg < 6 ? -ups_J_star_t_6 : 0;
+        J_star_ups_in_platform_xz += leg < 6 ? -ups_J_star_t_7 : 0;
+        J_star_ups_in_platform_yy += leg < 6 ? -ups_J_star_t_8 : 0;
+        J_star_ups_in_platform_yz += leg < 6 ? -ups_J_star_t_9 : 0;
+        J_star_ups_in_platform_zz += leg < 6 ? -ups_J_star_t_10 : 0;
+        b_c_ups_in_platform_x += leg < 6 ? ups_platform_point_x : 0;
+        b_c_ups_in_platform_y += leg < 6 ? ups_platform_point_y : 0;
+        b_c_ups_in_platform_z += leg < 6 ? ups_platform_point_z : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_ups;
+    const real m_star = m_star_ups + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_ups_x;
-    const real h_star_y = h_star_t_2 + total_ups_y;
-    const real h_star_z = h_star_t_3 + total_ups_z;
+    const real h_star_in_platform_x = h_star_t + h_star_ups_in_platform_x;
+    const real h_star_in_platform_y = h_star_t_2 + h_star_ups_in_platform_y;
+    const real h_star_in_platform_z = h_star_t_3 + h_star_ups_in_platform_z;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_ups_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_ups_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_ups_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_ups_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_ups_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_ups_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_ups_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_ups_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_ups_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_ups_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_ups_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.16666666666666666)*total_ups_x_2;
-    const real b_c_y = R(0.16666666666666666)*total_ups_y_2;
-    const real b_c_z = R(0.16666666666666666)*total_ups_z_2;
+    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_ups_in_platform_x;
+    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_ups_in_platform_y;
+    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_ups_in_platform_z;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->m_star = m_star;
     return OK;
 }
@@ -1330,41 +1334,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1375,26 +1385,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1413,21 +1432,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1445,27 +1464,27 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -1483,278 +1502,290 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
-        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
-        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
-        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
-        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
-            inv_ups_root_2*ups_J_group_2_zz);
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
-            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
-        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
-        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
-            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy));
-        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ups_Q_t = R(0.5)*ups_d_c_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
-        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
-            - ups_axis_x_x*ups_d_phi_3_t;
-        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
-            - ups_axis_x_y*ups_d_phi_3_t;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
-            - ups_axis_x_z*ups_d_phi_3_t;
-        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
-            ups_axis_x_x*ups_d_phi_3_t_2;
-        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
-            ups_axis_x_y*ups_d_phi_3_t_2;
-        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
-            ups_axis_x_z*ups_d_phi_3_t_2;
-        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
-        const real ups_Q_t_10 = 2*ups_Q_t_9;
-        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
-        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
-        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
-        const real ups_Q_t_14 = 2*ups_Q_t_13;
-        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
-        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
-            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
-        const real ups_Q_t_17 = 2*ups_Q_t_16;
-        /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z;
-        const real ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y;
-        const real ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2;
-        const real ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x;
-        const real ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x;
-        const real ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y;
-        const real ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x;
-        const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x;
-        const real ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y;
-        const real ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x;
-        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y;
-        const real ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z;
-        const real ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-u_1) centripetal acceleration of the connection point */
         const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        const real ups_u_1_in_axes2_z = axis_z_ups_axes2_x*ups_u_1_x +
+            axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-u_1) centripetal acceleration of the connection point */
-        const real ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x;
-        const real ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
-        const real ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
-        const real ups_u_1_tip_z = axis_z_ups_axes2_in_base_x*ups_u_1_x +
-            axis_z_ups_axes2_in_base_y*ups_u_1_y + axis_z_ups_axes2_in_base_z*ups_u_1_z;
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real ups_rel_o_z = ups_u_1_tip_z - ups_bias_z;
-        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real ups_qdd_2_o_t = inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z;
+        const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z;
+        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z;
+        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
         /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        const real ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2;
+        const real ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o;
         /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x;
-        const real ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
+        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_xy = -2*ups_W_2_xy - ups_qdd_2_o_t;
-        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
-        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_phi_3_o_x = -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x;
+        const real ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
+        const real ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
+        const real ups_B_2_o_in_axes2_yx = inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 +
+            ups_B_2_o_t_3 - ups_bias_t*ups_qd_2);
+        const real ups_B_2_o_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
+        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
         /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real ups_acc_3_o_x = ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y +
-            ups_axis_x_z*ups_u_1_z - ups_g_r3_x;
-        const real ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y;
-        const real ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x;
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
+        const real ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2;
+        const real ups_acc_3_o_in_axes2_x = axis_x_ups_axes2_x*ups_u_1_x +
+            axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
+        const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z;
+        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
+        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
-            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_o_t + ups_Sigma_2_xx*ups_qdd_2_o_t +
-            ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x - ups_B_2_o_xy*ups_Sigma_2_yy -
-            ups_J_group_2_yz*ups_alpha_1_o_t_2 - ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+            - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
+        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
+        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
+            ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
+            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
+            inv_ups_root_2*ups_J_group_2_in_axes2_xy));
         /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ups_c_o_y = ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z -
-            ups_h_3_x*ups_qdd_2_o_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+        const real ups_Q_t_3 = axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+            axis_y_ups_axes2_x*ups_Q_t - axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+            axis_y_ups_axes2_y*ups_Q_t - axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
+            - axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+        const real ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_x*ups_Q_t_2;
+        const real ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_y*ups_Q_t_2;
+        const real ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_z*ups_Q_t_2;
+        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_xx = -2*ups_Q_t_9;
+        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
+            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
+            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_yy = -2*ups_Q_t_10;
+        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
+            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_zz = -2*ups_Q_t_11;
         /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z;
-        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z;
-        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z;
+        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+        /* (M_ta) coupling block of M */
+        const real ups_M_ta_t = -ups_Q_xy*ups_q_z;
+        const real ups_M_ta_t_2 = ups_Q_xz*ups_q_y;
+        const real ups_M_ta_t_3 = ups_M_ta_t + ups_M_ta_t_2;
+        const real ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x;
+        const real ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y;
+        const real ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z;
+        const real ups_M_ta_t_7 = ups_Q_yz*ups_q_x;
+        const real ups_M_ta_t_8 = ups_M_ta_t + ups_M_ta_t_7;
+        const real ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y;
+        const real ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z;
+        const real ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x;
+        const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z;
+        const real ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y + ups_M_ta_t_8*ups_q_z;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
+        const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
         /* (Z_a) rotational part of Z */
-        const real ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z;
-        const real ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z -
-            ups_U_in_base_z*ups_q_in_base_x;
-        const real ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x -
-            ups_U_in_base_x*ups_q_in_base_y;
+        const real ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z;
+        const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
+        const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
-        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
-        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* total_ups_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* total_ups_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* total_ups_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* total_ups_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* total_ups_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* total_ups_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* total_ups_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* total_ups_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* total_ups_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* total_ups_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* total_ups_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* total_ups_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* total_ups_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* total_ups_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* total_ups_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
-        terms[22*count + k] = add ? terms[22*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
-        terms[23*count + k] = add ? terms[23*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
-        terms[24*count + k] = add ? terms[24*count + k] + ups_Z_a_t : ups_Z_a_t;  /* total_ups_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* total_ups_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* total_ups_z_2 */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        const real ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z;
+        const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
+        const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_xx : ups_Q_xx;  /* M_tt_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_xy : ups_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_xz : ups_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_yy : ups_Q_yy;  /* M_tt_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_yz : ups_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_zz : ups_Q_zz;  /* M_tt_ups_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* M_ta_ups_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* M_ta_ups_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* M_ta_ups_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* M_ta_ups_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* M_ta_ups_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* M_ta_ups_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* M_aa_ups_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* M_aa_ups_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* M_aa_ups_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* M_aa_ups_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* M_aa_ups_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* M_aa_ups_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + ups_U_x : ups_U_x;  /* Z_t_ups_x */
+        terms[22*count + k] = add ? terms[22*count + k] + ups_U_y : ups_U_y;  /* Z_t_ups_y */
+        terms[23*count + k] = add ? terms[23*count + k] + ups_U_z : ups_U_z;  /* Z_t_ups_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + ups_Z_a_t : ups_Z_a_t;  /* Z_a_ups_x */
+        terms[25*count + k] = add ? terms[25*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* Z_a_ups_y */
+        terms[26*count + k] = add ? terms[26*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* Z_a_ups_z */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = axis_x_ups_axes2_x;
+        o[1*count + k] = axis_x_ups_axes2_y;
+        o[2*count + k] = axis_x_ups_axes2_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + (ups_H_a_3_x +
-            (ups_H_a_3_y + ups_H_a_3_z));
+        o[7*count + k] = (axis_x_ups_axes2_x + (axis_x_ups_axes2_y + axis_x_ups_axes2_z)) +
+            (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
         o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -1782,101 +1813,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_ups_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_ups_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_ups_xx;
-        const real total_ups_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_ups_yy;
-        const real total_ups_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_ups_zz;
+        const real M_tt_xx = M_tt_ups_xx + m_star;
+        const real M_tt_ups_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_ups_yy + m_star;
+        const real M_tt_ups_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_ups_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_ups_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_ups_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_ups_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_ups_xz_2 - h_star_in_base_y;
-        const real total_ups_yx = sums[9*w + k];
-        const real M_ta_yx = total_ups_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_ups_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_ups_yz_2;
-        const real total_ups_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_ups_zx;
-        const real total_ups_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_ups_zy;
+        const real M_ta_ups_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_ups_xy + h_star_z;
+        const real M_ta_ups_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_ups_xz - h_star_y;
+        const real M_ta_ups_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_ups_yx - h_star_z;
+        const real M_ta_ups_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_ups_yz + h_star_x;
+        const real M_ta_ups_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_ups_zx + h_star_y;
+        const real M_ta_ups_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_ups_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_ups_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_ups_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_ups_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_ups_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_ups_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_ups_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_ups_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_ups_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_ups_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_ups_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_ups_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_ups_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_ups_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_ups_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_ups_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_ups_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_ups_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_ups_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_ups_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_ups_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_ups_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_ups_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_ups_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_ups_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_ups_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_ups_x;
+        const real Z_t_ups_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_ups_x;
         const real Z_p_y = s[28*w + k];
-        const real total_ups_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_ups_y;
+        const real Z_t_ups_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_ups_y;
         const real Z_p_z = s[29*w + k];
-        const real total_ups_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_ups_z;
+        const real Z_t_ups_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_ups_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_ups_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_ups_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_ups_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_ups_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_ups_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_ups_z_2;
+        const real Z_a_ups_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_ups_x + Z_q_x;
+        const real Z_a_ups_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_ups_y + Z_q_y;
+        const real Z_a_ups_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_ups_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_ups_xy = sums[1*w + k];
-        M[1*w + k] = -total_ups_xy;
-        M[6*w + k] = -total_ups_xy;
-        const real total_ups_xz = sums[2*w + k];
-        M[2*w + k] = -total_ups_xz;
-        M[12*w + k] = -total_ups_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_ups_yz = sums[4*w + k];
-        M[8*w + k] = -total_ups_yz;
-        M[13*w + k] = -total_ups_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_ups_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_ups_xx_2;
-        M[18*w + k] = total_ups_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_ups_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_ups_yy_2;
-        M[25*w + k] = -total_ups_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_ups_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_ups_zz_2;
-        M[32*w + k] = -total_ups_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1886,17 +1920,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_ups_xy + total_ups_xz)) + (M_tt_yy + (total_ups_yz +
-            M_tt_zz))) + ((total_ups_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_ups_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_ups_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -1967,37 +2002,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2010,15 +2051,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2036,27 +2077,27 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -2074,141 +2115,135 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = inv_ups_root_2*ups_S_x;
+        const real ups_w_3_y = inv_ups_root_2*ups_S_y;
+        const real ups_w_3_z = inv_ups_root_2*ups_S_z;
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
+        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
-        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
-            inv_ups_root_2*ups_J_group_2_zz);
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
-            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
-        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
-        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
-            inv_ups_root_2*ups_J_group_2_yy));
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
+        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
+        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
+            ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ups_Q_t = R(0.5)*ups_d_c_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
-        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
-            - ups_axis_x_x*ups_d_phi_3_t;
-        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
-            - ups_axis_x_y*ups_d_phi_3_t;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
-            - ups_axis_x_z*ups_d_phi_3_t;
-        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
-            ups_axis_x_x*ups_d_phi_3_t_2;
-        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
-            ups_axis_x_y*ups_d_phi_3_t_2;
-        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
-            ups_axis_x_z*ups_d_phi_3_t_2;
-        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
-        const real ups_Q_t_10 = 2*ups_Q_t_9;
-        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
-        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
-        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
-        const real ups_Q_t_14 = 2*ups_Q_t_13;
-        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
-        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
-            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
-        const real ups_Q_t_17 = 2*ups_Q_t_16;
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z -
+            axis_z_ups_axes2_z*ups_w_3_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x -
+            axis_z_ups_axes2_x*ups_w_3_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y -
+            axis_z_ups_axes2_y*ups_w_3_x;
+        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
+            - ups_d_phi_3_in_axes2_xy*ups_w_3_z;
+        const real ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x;
+        const real ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y;
+        const real ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z;
+        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_xx = -2*ups_Q_t_9;
+        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
+            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
+            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_yy = -2*ups_Q_t_10;
+        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
+            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_zz = -2*ups_Q_t_11;
         /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z;
-        const real ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y;
-        const real ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2;
-        const real ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x;
-        const real ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x;
-        const real ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y;
-        const real ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x;
-        const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x;
-        const real ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y;
-        const real ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x;
+        const real ups_M_ta_t = -ups_Q_xy*ups_q_z;
+        const real ups_M_ta_t_2 = ups_Q_xz*ups_q_y;
+        const real ups_M_ta_t_3 = ups_M_ta_t + ups_M_ta_t_2;
+        const real ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x;
+        const real ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y;
+        const real ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z;
+        const real ups_M_ta_t_7 = ups_Q_yz*ups_q_x;
+        const real ups_M_ta_t_8 = ups_M_ta_t + ups_M_ta_t_7;
+        const real ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y;
+        const real ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z;
+        const real ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x;
         const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y;
-        const real ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z;
-        const real ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* total_ups_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* total_ups_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* total_ups_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* total_ups_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* total_ups_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* total_ups_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* total_ups_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* total_ups_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* total_ups_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* total_ups_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* total_ups_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* total_ups_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* total_ups_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* total_ups_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* total_ups_zz_3 */
+        const real ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z;
+        const real ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y + ups_M_ta_t_8*ups_q_z;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
+        const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_xx : ups_Q_xx;  /* M_tt_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_xy : ups_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_xz : ups_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_yy : ups_Q_yy;  /* M_tt_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_yz : ups_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_zz : ups_Q_zz;  /* M_tt_ups_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + ups_M_ta_t_3 : ups_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + ups_M_ta_t_4 : ups_M_ta_t_4;  /* M_ta_ups_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + ups_M_ta_t_5 : ups_M_ta_t_5;  /* M_ta_ups_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + ups_M_ta_t_6 : ups_M_ta_t_6;  /* M_ta_ups_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + ups_M_ta_t_8 : ups_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + ups_M_ta_t_9 : ups_M_ta_t_9;  /* M_ta_ups_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + ups_M_ta_t_10 : ups_M_ta_t_10;  /* M_ta_ups_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + ups_M_ta_t_11 : ups_M_ta_t_11;  /* M_ta_ups_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + ups_M_ta_t_12 : ups_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + ups_M_aa_t : ups_M_aa_t;  /* M_aa_ups_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + ups_M_aa_t_2 : ups_M_aa_t_2;  /* M_aa_ups_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + ups_M_aa_t_3 : ups_M_aa_t_3;  /* M_aa_ups_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + ups_M_aa_t_4 : ups_M_aa_t_4;  /* M_aa_ups_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + ups_M_aa_t_5 : ups_M_aa_t_5;  /* M_aa_ups_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + ups_M_aa_t_6 : ups_M_aa_t_6;  /* M_aa_ups_zz */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -2228,81 +2263,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_ups_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_ups_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_ups_xx;
-        const real total_ups_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_ups_yy;
-        const real total_ups_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_ups_zz;
+        const real M_tt_xx = M_tt_ups_xx + m_star;
+        const real M_tt_ups_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_ups_yy + m_star;
+        const real M_tt_ups_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_ups_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_ups_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_ups_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_ups_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_ups_xz_2 - h_star_in_base_y;
-        const real total_ups_yx = sums[9*w + k];
-        const real M_ta_yx = total_ups_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_ups_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_ups_yz_2;
-        const real total_ups_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_ups_zx;
-        const real total_ups_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_ups_zy;
+        const real M_ta_ups_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_ups_xy + h_star_z;
+        const real M_ta_ups_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_ups_xz - h_star_y;
+        const real M_ta_ups_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_ups_yx - h_star_z;
+        const real M_ta_ups_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_ups_yz + h_star_x;
+        const real M_ta_ups_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_ups_zx + h_star_y;
+        const real M_ta_ups_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_ups_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_ups_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_ups_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_ups_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_ups_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_ups_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_ups_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_ups_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_ups_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_ups_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_ups_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_ups_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_ups_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_ups_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_ups_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_ups_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_ups_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_ups_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_ups_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_ups_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_ups_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_ups_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_ups_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_ups_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_ups_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_ups_xy = sums[1*w + k];
-        M[1*w + k] = -total_ups_xy;
-        M[6*w + k] = -total_ups_xy;
-        const real total_ups_xz = sums[2*w + k];
-        M[2*w + k] = -total_ups_xz;
-        M[12*w + k] = -total_ups_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_ups_yz = sums[4*w + k];
-        M[8*w + k] = -total_ups_yz;
-        M[13*w + k] = -total_ups_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_ups_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_ups_xx_2;
-        M[18*w + k] = total_ups_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_ups_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_ups_yy_2;
-        M[25*w + k] = -total_ups_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[10*w + k] = -M_ta_t;
+        M[25*w + k] = -M_ta_t;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_ups_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_ups_zz_2;
-        M[32*w + k] = -total_ups_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2312,10 +2350,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_ups_xy) + (total_ups_xz + (M_tt_yy + total_ups_yz))) +
-            ((M_tt_zz + total_ups_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_ups_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_ups_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2398,16 +2436,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2418,30 +2459,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2463,9 +2513,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2483,27 +2533,27 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -2521,175 +2571,182 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
+        /* (ups-W_2) centripetal tensor of link 2 */
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-u_1) centripetal acceleration of the connection point */
         const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        const real ups_u_1_in_axes2_z = axis_z_ups_axes2_x*ups_u_1_x +
+            axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-u_1) centripetal acceleration of the connection point */
-        const real ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x;
-        const real ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
-        const real ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
-        const real ups_u_1_tip_z = axis_z_ups_axes2_in_base_x*ups_u_1_x +
-            axis_z_ups_axes2_in_base_y*ups_u_1_y + axis_z_ups_axes2_in_base_z*ups_u_1_z;
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real ups_rel_o_z = ups_u_1_tip_z - ups_bias_z;
-        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real ups_qdd_2_o_t = inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z;
+        const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z;
+        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z;
         /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        const real ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2;
+        const real ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o;
         /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x;
-        const real ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
+        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_xy = -2*ups_W_2_xy - ups_qdd_2_o_t;
-        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
-        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_phi_3_o_x = -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x;
+        const real ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
+        const real ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
+        const real ups_B_2_o_in_axes2_yx = inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 +
+            ups_B_2_o_t_3 - ups_bias_t*ups_qd_2);
+        const real ups_B_2_o_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
+        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
         /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real ups_acc_3_o_x = ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y +
-            ups_axis_x_z*ups_u_1_z - ups_g_r3_x;
-        const real ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y;
-        const real ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x;
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
+        const real ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2;
+        const real ups_acc_3_o_in_axes2_x = axis_x_ups_axes2_x*ups_u_1_x +
+            axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
+        const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z;
+        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
-            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_o_t + ups_Sigma_2_xx*ups_qdd_2_o_t +
-            ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x - ups_B_2_o_xy*ups_Sigma_2_yy -
-            ups_J_group_2_yz*ups_alpha_1_o_t_2 - ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+            - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ups_c_o_y = ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z -
-            ups_h_3_x*ups_qdd_2_o_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z;
-        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z;
-        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z;
+        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
         /* (Z_a) rotational part of Z */
-        const real ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z;
-        const real ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z -
-            ups_U_in_base_z*ups_q_in_base_x;
-        const real ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x -
-            ups_U_in_base_x*ups_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Z_a_t : ups_Z_a_t;  /* total_ups_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* total_ups_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* total_ups_z_2 */
+        const real ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z;
+        const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
+        const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_U_x : ups_U_x;  /* Z_t_ups_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_U_y : ups_U_y;  /* Z_t_ups_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_U_z : ups_U_z;  /* Z_t_ups_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Z_a_t : ups_Z_a_t;  /* Z_a_ups_x */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Z_a_t_2 : ups_Z_a_t_2;  /* Z_a_ups_y */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Z_a_t_3 : ups_Z_a_t_3;  /* Z_a_ups_z */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -2709,27 +2766,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_ups_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_ups_x;
+        const real Z_t_ups_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_ups_x;
         const real Z_p_y = s[19*w + k];
-        const real total_ups_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_ups_y;
+        const real Z_t_ups_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_ups_y;
         const real Z_p_z = s[20*w + k];
-        const real total_ups_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_ups_z;
+        const real Z_t_ups_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_ups_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_ups_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_ups_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_ups_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_ups_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_ups_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_ups_z_2;
+        const real Z_a_ups_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_ups_x + Z_q_x;
+        const real Z_a_ups_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_ups_y + Z_q_y;
+        const real Z_a_ups_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_ups_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -2830,27 +2889,27 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -2869,31 +2928,33 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
+        /* (ups-w_2) reciprocal vector 2 */
+        const real ups_w_2_in_axes2_y = 1/ups_root_2;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
-        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
-        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        const real ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y;
+        const real ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z;
+        const real ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x;
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = ups_w_3_x;
+        o[1*count + k] = ups_w_3_y;
+        o[2*count + k] = ups_w_3_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + (ups_H_a_3_x +
-            (ups_H_a_3_y + ups_H_a_3_z));
+        o[7*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y +
+            ups_H_a_3_z));
         o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_2) > TOLERANCE*R(0.8));
@@ -3000,33 +3061,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3034,31 +3082,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3086,9 +3160,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3106,27 +3180,27 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -3144,186 +3218,195 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
         /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
-        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
-        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
         /* (ups-S_ddot) acceleration of the connection point */
         const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x;
-        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
-        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
-        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z;
+        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
+            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
-            ups_S_ddot_z*ups_axis_x_z - ups_g_r3_x;
-        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
-        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
         /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
-        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
-        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
-        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        const real ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x;
+        const real ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
+        const real ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
+        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
+        const real ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2;
+        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
+            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x;
+        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
         /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_phi_3_x = -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        const real ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_phi_3_in_axes2_x = ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_t - ups_phi_3_t_2) -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
-            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
-            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
-            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
+            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_phi_3_t) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
-            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
-        const real ups_c_in_base_x = axis_y_ups_axes2_x*ups_c_y +
-            axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x;
-        const real ups_c_in_base_y = axis_y_ups_axes2_y*ups_c_y +
-            axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x;
-        const real ups_c_in_base_z = axis_y_ups_axes2_z*ups_c_y +
-            axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x;
+        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_phi_3_t_2);
+        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_x = axis_y_ups_axes2_x*ups_c_in_axes2_y +
+            axis_z_ups_axes2_x*ups_c_in_axes2_z - axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
+        const real ups_c_y = axis_y_ups_axes2_y*ups_c_in_axes2_y +
+            axis_z_ups_axes2_y*ups_c_in_axes2_z - axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
+        const real ups_c_z = axis_y_ups_axes2_z*ups_c_in_axes2_y +
+            axis_z_ups_axes2_z*ups_c_in_axes2_z - axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real ups_R_a_t = ups_c_in_base_z*ups_q_in_base_y - ups_c_in_base_y*ups_q_in_base_z;
-        const real ups_R_a_t_2 = ups_c_in_base_x*ups_q_in_base_z -
-            ups_c_in_base_z*ups_q_in_base_x;
-        const real ups_R_a_t_3 = ups_c_in_base_y*ups_q_in_base_x -
-            ups_c_in_base_x*ups_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_c_in_base_x : ups_c_in_base_x;  /* total_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_c_in_base_y : ups_c_in_base_y;  /* total_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_c_in_base_z : ups_c_in_base_z;  /* total_ups_z */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_R_a_t : ups_R_a_t;  /* total_ups_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_R_a_t_2 : ups_R_a_t_2;  /* total_ups_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_R_a_t_3 : ups_R_a_t_3;  /* total_ups_z_2 */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        const real ups_R_a_t = ups_c_y*ups_q_z - ups_c_z*ups_q_y;
+        const real ups_R_a_t_2 = ups_c_z*ups_q_x - ups_c_x*ups_q_z;
+        const real ups_R_a_t_3 = ups_c_x*ups_q_y - ups_c_y*ups_q_x;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+        const real ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z;
+        const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
+        const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_c_x : ups_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_c_y : ups_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_c_z : ups_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_R_a_t : ups_R_a_t;  /* R_a_ups_x */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_R_a_t_2 : ups_R_a_t_2;  /* R_a_ups_y */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_R_a_t_3 : ups_R_a_t_3;  /* R_a_ups_z */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = axis_x_ups_axes2_x;
+        o[1*count + k] = axis_x_ups_axes2_y;
+        o[2*count + k] = axis_x_ups_axes2_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
@@ -3352,28 +3435,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_ups_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_ups_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_ups_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_ups_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_ups_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_ups_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_ups_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_ups_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_ups_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_ups_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_ups_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_ups_z_2;
+        const real R_a_ups_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_ups_x + mu_p_x;
+        const real R_a_ups_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_ups_y + mu_p_y;
+        const real R_a_ups_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_ups_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -3510,27 +3595,29 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg,
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-q_1) displacement of joint 1 */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        /* (ups-q_1) displacement of joint 1 */
-        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
         /* (ups-q_2) displacement of joint 2 */
-        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1);
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_in_axes1_z,
+            inv_ups_root_2*ups_root_1);
+        /* (ups-q_1) displacement of joint 1 */
         o[0*count + k] = ups_q_1;
+        /* (ups-q_2) displacement of joint 2 */
         o[1*count + k] = ups_q_2;
+        /* (ups-q_3) displacement of joint 3 */
         o[2*count + k] = ups_root_2;
         o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
@@ -3656,27 +3743,27 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -3694,60 +3781,58 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
         /* (ups-S_dot) velocity of the connection point */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
+        const real ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z;
         const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
-        const real ups_qd_2 = inv_ups_root_2*(ups_S_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z
-            - axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
-            ups_S_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
-            ups_S_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x));
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
+        const real ups_qd_2 = inv_ups_root_2*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
+            ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
+            ups_S_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y));
+        /* (ups-qd_1) rate of joint 1 */
         o[0*count + k] = ups_qd_1;
+        /* (ups-qd_2) rate of joint 2 */
         o[1*count + k] = ups_qd_2;
-        o[2*count + k] = ups_S_dot_tip_x;
-        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_tip_x);
+        /* (ups-qd_3) rate of joint 3 */
+        o[2*count + k] = ups_S_dot_in_axes2_x;
+        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -3894,27 +3979,27 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -3932,97 +4017,97 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
         /* (ups-S_dot) velocity of the connection point */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t;
-        const real ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_omega_1_t*ups_qd_2*ups_root_2;
+        const real ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z;
+        const real ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1;
         /* (ups-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
         /* (ups-S_ddot) acceleration of the connection point */
         const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
-            ups_S_ddot_z*ups_axis_x_z + ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 +
-            ups_qd_2*ups_qd_2);
-        const real ups_rel_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z -
-            ups_bias_z;
+        const real ups_rel_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
+            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z -
+            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2);
+        const real ups_rel_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
+            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z -
+            ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
+        /* (ups-qdd_2) acceleration of joint 2 */
         const real ups_qdd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x +
             axis_y_ups_axes2_y*ups_S_ddot_y + axis_y_ups_axes2_z*ups_S_ddot_z -
-            ups_bias_t*ups_qd_2) + ups_omega_1_t*ups_omega_1_t_2;
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+            ups_bias_t*ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+        /* (ups-qdd_1) acceleration of joint 1 */
         o[0*count + k] = ups_qdd_1;
+        /* (ups-qdd_2) acceleration of joint 2 */
         o[1*count + k] = ups_qdd_2;
-        o[2*count + k] = ups_rel_x;
-        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_x);
+        /* (ups-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = ups_rel_in_axes2_x;
+        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -4170,27 +4255,27 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -4208,176 +4293,185 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y;
+        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
         const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x;
+        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
+        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
         const real t_dot_x = s[12*w + j];
         const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
         const real t_dot_y = s[13*w + j];
         const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
         const real t_dot_z = s[14*w + j];
         const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_tip_x = ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y +
-            ups_S_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
+            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
+        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
+        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
+            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
             axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
         /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y;
+        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z;
+        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x;
+        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
         /* (ups-S_ddot) acceleration of the connection point */
         const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
         const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
         const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x;
-        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
-        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
-        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*ups_S_ddot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_ddot_y + axis_z_ups_axes2_in_base_z*ups_S_ddot_z;
+        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
+            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_x = ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y +
-            ups_S_ddot_z*ups_axis_x_z - ups_g_r3_x;
-        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
-        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
         /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
-        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
-        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
-        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        const real ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x;
+        const real ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
+        const real ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
+        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
+        const real ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2;
+        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
+            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x;
+        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
-            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
-            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
-            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_mu_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
+            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_mu_2_t_2) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
-            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
+        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_mu_2_t_3);
+        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         const real ups_link3_mass = m->ups_link3_mass[i];
-        const real ups_c_true_x = ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y +
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) - ups_acc_3_x*ups_link3_mass;
-        const real ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass;
-        const real ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass;
-        const real ups_c_true_in_base_x = axis_y_ups_axes2_x*ups_c_true_y +
-            axis_z_ups_axes2_in_base_x*ups_c_true_z + ups_axis_x_x*ups_c_true_x;
-        const real ups_c_true_in_base_y = axis_y_ups_axes2_y*ups_c_true_y +
-            axis_z_ups_axes2_in_base_y*ups_c_true_z + ups_axis_x_y*ups_c_true_x;
-        const real ups_c_true_in_base_z = axis_y_ups_axes2_z*ups_c_true_y +
-            axis_z_ups_axes2_in_base_z*ups_c_true_z + ups_axis_x_z*ups_c_true_x;
-        o[0*count + k] = ups_c_true_in_base_x;
-        o[1*count + k] = ups_c_true_in_base_y;
-        o[2*count + k] = ups_c_true_in_base_z;
-        o[3*count + k] = ups_axis_x_x;
-        o[4*count + k] = ups_axis_x_y;
-        o[5*count + k] = ups_axis_x_z;
+        const real ups_c_true_in_axes2_x = ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
+            ups_acc_3_in_axes2_x*ups_link3_mass - ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_h_3_in_spec2_x*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass;
+        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass;
+        const real ups_c_true_x = axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_x*ups_c_true_in_axes2_y + axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
+        const real ups_c_true_y = axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_y*ups_c_true_in_axes2_y + axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
+        const real ups_c_true_z = axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_z*ups_c_true_in_axes2_y + axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
+        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = ups_c_true_x;
+        o[1*count + k] = ups_c_true_y;
+        o[2*count + k] = ups_c_true_z;
+        /* (ups-w_3) reciprocal vector 3 */
+        o[3*count + k] = axis_x_ups_axes2_x;
+        o[4*count + k] = axis_x_ups_axes2_y;
+        o[5*count + k] = axis_x_ups_axes2_z;
         o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -4452,13 +4546,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -4524,52 +4620,53 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (potential) potential energy */
-        const real ups_b_r0_x = m->ups_b_r0_x[i];
-        const real ups_b_r0_y = m->ups_b_r0_y[i];
-        const real ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1;
-        const real ups_b_r0_z = m->ups_b_r0_z[i];
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_potential_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_potential_t = m->ups_potential_t[i];
+        const real ups_potential_t_2 = m->ups_potential_t_2[i];
+        const real ups_potential_t_5 = ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
         const real ups_link2_mass = m->ups_link2_mass[i];
-        const real ups_potential_t = (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y +
-            ups_h_3_y + ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) +
-            (ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x +
-            ups_link2_mass*(ups_b_r0_z*ups_s_2 - ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z -
-            ups_g_r1_y*ups_s_2)*(ups_h_2_z + ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 -
-            ups_b_r1_y*ups_s_2));
-        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t : ups_potential_t;  /* total_ups */
+        const real ups_potential_t_3 = m->ups_potential_t_3[i];
+        const real ups_potential_t_6 = (ups_acc_3_t_3*ups_c_2 -
+            ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(ups_c_2*ups_potential_t_3 - ups_potential_t_5*ups_s_2)) -
+            (ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
+            + ups_link2_mass*(ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1)) -
+            (ups_acc_3_t_3*ups_s_2 + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
+            ups_potential_t_3*ups_s_2));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t_6 : ups_potential_t_6;  /* potential_ups */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
@@ -4587,8 +4684,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_ups = sums[0*w + k];
-        const real potential_ = -potential_t - total_ups;
+        const real potential_ups = sums[0*w + k];
+        const real potential_ = potential_ups - potential_t;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -4658,6 +4756,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -4678,27 +4777,27 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
             R_xz*ups_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real ups_q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
             R_yz*ups_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real ups_q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
             R_zz*ups_platform_point_z;
         const real t_x = s[0*w + j];
         const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x;
+        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
         const real t_y = s[1*w + j];
         const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y;
+        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
         const real t_z = s[2*w + j];
         const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z;
+        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
         /* (ups-px_1) component along the reference direction */
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_yx = m->ups_base_frame_yx[i];
@@ -4720,53 +4819,55 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z;
-        const real ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x;
-        const real ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real ups_spread_t = b_c_x - ups_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real ups_spread_t_2 = b_c_y - ups_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real ups_spread_t_3 = b_c_z - ups_platform_point_z;
-        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
-            ups_spread_t_3*ups_spread_t_3;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_pivot_size = magnitude(ups_rho2_1);
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_pivot_size_3 = magnitude(ups_root_1);
-        const real ups_pivot_size_4 = magnitude(ups_root_2);
+        /* (ups-w_2) reciprocal vector 2 */
+        const real ups_w_2_in_axes2_y = 1/ups_root_2;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real ups_pivot_size = magnitude(ups_rho2_1);
+        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
+        const real ups_pivot_size_3 = magnitude(ups_root_1);
+        const real ups_pivot_size_4 = magnitude(ups_root_2);
         const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
             R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
-        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* total_ups */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
+        const real ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y;
+        const real ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z;
+        const real ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real ups_spread_t = b_c_in_platform_x - ups_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z;
+        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
+            ups_spread_t_3*ups_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* spread_ups */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = ups_w_3_x;
+        o[1*count + k] = ups_w_3_y;
+        o[2*count + k] = ups_w_3_z;
+        /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
+        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[6*count + k] = ups_least_pivots;
-        o[8*count + k] = (ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z)) + ((ups_H_a_3_x +
-            ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+        o[8*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + ((ups_H_a_3_x + ups_H_a_3_y) +
+            (ups_H_a_3_z + ups_least_pivots));
         o[7*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -4796,8 +4897,9 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        const real total_ups = sums[0*w + k];
-        const real spread_ = spread_t*root(total_ups);
+        const real spread_ups = sums[0*w + k];
+        const real spread_ = spread_t*root(spread_ups);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -353,7 +353,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -547,48 +547,68 @@ def _prepare(p):
     spread_t = 0.16666666666666666*sqrt(6.0)
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.9595917942265426*spread_t
+    # (ups-h_2) first moment of link 2 about the origin of link 2
+    ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass
+    ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass
+    ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass
     # (ups-h_3) first moment of link 3 about the connection point
-    ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass
-    ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass
-    ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (ups-J_2) inertia tensor of link 2 about the origin of link 2
-    ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
-    ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
-    ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
-    ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3
-    # (ups-J_3) inertia tensor of link 3 about the connection point
-    ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
-    ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
-    ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
-    ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3
-    # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
-    ups_J_group_2_xx = (
-    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t - ups_J_3_t_4)
+    ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass
+    ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass
+    ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass
+    # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+    ups_acc_3_t = (
+    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
     )
-    ups_J_group_2_xy = (
+    ups_acc_3_t_2 = (
+    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
+    )
+    ups_acc_3_t_3 = (
+    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    )
+    # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
+    ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
+    ups_J_group_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
+    ups_J_group_2_t_4 = ups_J_group_2_t + ups_J_group_2_t_2 + ups_J_group_2_t_3
+    ups_J_group_2_t_5 = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
+    ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
+    ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
+    ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7
+    ups_J_group_2_in_axes2_xx = (
+    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(ups_J_group_2_t -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8)
+    )
+    ups_J_group_2_in_axes2_xy = (
     ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_xz - ups_link3_inertia_xz
     )
-    ups_J_group_2_xz = (
+    ups_J_group_2_in_axes2_xz = (
     ups_link2_inertia_xy + ups_link3_inertia_xy -
         ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass
     )
-    ups_J_group_2_yy = (
-    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t_3 - ups_J_3_t_4)
+    ups_J_group_2_in_axes2_yy = (
+    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(ups_J_group_2_t_3 -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8)
     )
-    ups_J_group_2_yz = (
+    ups_J_group_2_in_axes2_yz = (
     ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_yz - ups_link3_inertia_yz
     )
-    ups_J_group_2_zz = (
-    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t_2 - ups_J_3_t_4)
+    ups_J_group_2_in_axes2_zz = (
+    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_group_2_t_2 -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8)
     )
+    # (ups-trace_J_2) half the trace of that inertia tensor
+    ups_trace_J_2 = (
+    0.5*ups_J_group_2_in_axes2_xx + 0.5*ups_J_group_2_in_axes2_yy + 0.5*ups_J_group_2_in_axes2_zz
+    )
+    # (ups-Sigma_2) second moment of mass of the links that turn with link 2
+    ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx
+    ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy
+    ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz
     # (h_star) first moment about the platform origin
     ups_h_star_t = ups_link3_mass*ups_platform_point_x
     ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
@@ -604,120 +624,111 @@ def _prepare(p):
     ups_J_star_t_8 = ups_link3_mass*(ups_J_star_t_2 - ups_J_star_t_4)
     ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z
     ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4)
-    # (ups-h_2) first moment of link 2 about the origin of link 2
-    ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass
-    ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass
-    ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass
-    # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    ups_g_r0_x = (
-    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
-    )
-    ups_g_r0_y = (
-    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
-    )
-    ups_g_r0_z = (
-    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
-    )
-    # (ups-trace_J_2) half the trace of that inertia tensor
-    ups_trace_J_2 = 0.5*ups_J_group_2_xx + 0.5*ups_J_group_2_yy + 0.5*ups_J_group_2_zz
-    # (ups-Sigma_2) second moment of mass of the links that turn with link 2
-    ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx
-    ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy
-    ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz
     # (potential) potential energy
-    ups_b_r0_x = (
+    ups_potential_t = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    ups_b_r0_y = (
+    ups_potential_t_2 = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    ups_b_r0_z = (
+    ups_potential_t_3 = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
-    total_ups_x = np.sum(np.broadcast_to(ups_h_star_t, _ups))
-    total_ups_y = np.sum(np.broadcast_to(ups_h_star_t_2, _ups))
-    total_ups_z = np.sum(np.broadcast_to(ups_h_star_t_3, _ups))
-    total_ups_xx = np.sum(np.broadcast_to(ups_J_star_t_5, _ups))
-    total_ups_xy = np.sum(np.broadcast_to(ups_J_star_t_6, _ups))
-    total_ups_xz = np.sum(np.broadcast_to(ups_J_star_t_7, _ups))
-    total_ups_yy = np.sum(np.broadcast_to(ups_J_star_t_8, _ups))
-    total_ups_yz = np.sum(np.broadcast_to(ups_J_star_t_9, _ups))
-    total_ups_zz = np.sum(np.broadcast_to(ups_J_star_t_10, _ups))
-    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
-    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
-    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
+    m_star_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    h_star_ups_in_platform_x = np.sum(np.broadcast_to(ups_h_star_t, _ups))
+    h_star_ups_in_platform_y = np.sum(np.broadcast_to(ups_h_star_t_2, _ups))
+    h_star_ups_in_platform_z = np.sum(np.broadcast_to(ups_h_star_t_3, _ups))
+    J_star_ups_in_platform_xx = np.sum(np.broadcast_to(-ups_J_star_t_5, _ups))
+    J_star_ups_in_platform_xy = np.sum(np.broadcast_to(-ups_J_star_t_6, _ups))
+    J_star_ups_in_platform_xz = np.sum(np.broadcast_to(-ups_J_star_t_7, _ups))
+    J_star_ups_in_platform_yy = np.sum(np.broadcast_to(-ups_J_star_t_8, _ups))
+    J_star_ups_in_platform_yz = np.sum(np.broadcast_to(-ups_J_star_t_9, _ups))
+    J_star_ups_in_platform_zz = np.sum(np.broadcast_to(-ups_J_star_t_10, _ups))
+    b_c_ups_in_platform_x = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
+    b_c_ups_in_platform_y = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
+    b_c_ups_in_platform_z = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_ups
+    m_star = m_star_ups + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_ups_x
-    h_star_y = h_star_t_2 + total_ups_y
-    h_star_z = h_star_t_3 + total_ups_z
+    h_star_in_platform_x = h_star_t + h_star_ups_in_platform_x
+    h_star_in_platform_y = h_star_t_2 + h_star_ups_in_platform_y
+    h_star_in_platform_z = h_star_t_3 + h_star_ups_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_ups_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_ups_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_ups_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_ups_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_ups_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_ups_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_ups_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_ups_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_ups_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_ups_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_ups_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_ups_x_2
-    b_c_y = 0.16666666666666666*total_ups_y_2
-    b_c_z = 0.16666666666666666*total_ups_z_2
+    b_c_in_platform_x = 0.16666666666666666*b_c_ups_in_platform_x
+    b_c_in_platform_y = 0.16666666666666666*b_c_ups_in_platform_y
+    b_c_in_platform_z = 0.16666666666666666*b_c_ups_in_platform_z
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-                    ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz,
+        (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+                    ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
+                    ups_J_group_2_in_axes2_zz, ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy,
+                    ups_Sigma_2_in_axes2_zz, ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_2_x,
-                    ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_platform_point_x,
-                    ups_platform_point_y, ups_platform_point_z,),
+                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
+                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-                    ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+                    ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
+                    ups_J_group_2_in_axes2_zz, ups_base_frame_xx, ups_base_frame_xy,
+                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -735,16 +746,20 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -789,33 +804,36 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
-                    ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link3_mass,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+        (ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
                     ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
                     ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
-                    ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
-                    ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+                    ups_potential_t, ups_potential_t_2, ups_potential_t_3,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_ups,
         (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -1317,9 +1335,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1374,73 +1393,92 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-            ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz, ups_base_frame_xx,
-            ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-            ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-            ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-            ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x,
-            ups_h_3_y, ups_h_3_z, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+        ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+            ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -1453,322 +1491,338 @@ def _run_dynamics(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
-        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
-        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
-        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
-        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
-        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_yy = (
-        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
-        )
-        ups_d_c_yz = (
-        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
-            inv_ups_root_2*ups_J_group_2_yz)
-        )
-        ups_d_c_zz = (
-        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
-            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy))
-        )
-        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        ups_Q_t = 0.5*ups_d_c_yy
-        ups_Q_t_2 = 0.5*ups_d_c_zz
-        ups_Q_t_3 = (
-        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
-            ups_axis_x_x*ups_d_phi_3_t
-        )
-        ups_Q_t_4 = (
-        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
-            ups_axis_x_y*ups_d_phi_3_t
-        )
-        ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
-            ups_axis_x_z*ups_d_phi_3_t
-        )
-        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
-        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
-        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
-        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
-        ups_Q_t_10 = 2.0*ups_Q_t_9
-        ups_Q_t_11 = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
-        )
-        ups_Q_t_12 = (
-        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
-        )
-        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
-        ups_Q_t_14 = 2.0*ups_Q_t_13
-        ups_Q_t_15 = (
-        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
-        )
-        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
-        ups_Q_t_17 = 2.0*ups_Q_t_16
-        # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z
-        ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y
-        ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2
-        ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x
-        ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x
-        ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y
-        ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x
-        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
-        ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x
-        ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y
-        ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x
-        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
-        # (M_aa) rotational block of M
-        ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y
-        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y
-        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z
-        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x
-        ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z
-        ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-u_1) centripetal acceleration of the connection point
         ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        ups_u_1_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_u_1_x + axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z
+        )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-u_1) centripetal acceleration of the connection point
-        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
-        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
-        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
-        ups_u_1_tip_z = (
-        axis_z_ups_axes2_in_base_x*ups_u_1_x + axis_z_ups_axes2_in_base_y*ups_u_1_y +
-            axis_z_ups_axes2_in_base_z*ups_u_1_z
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        ups_rel_o_z = ups_u_1_tip_z - ups_bias_z
-        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        ups_qdd_2_o_t = (
-        inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z
+        ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
+        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
+        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2
+        ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x
-        ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y
+        ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
+        ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_xy = -2.0*ups_W_2_xy - ups_qdd_2_o_t
-        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
-        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
-        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_x = (
-        -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 +
-            ups_W_2_t_3)
+        ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_B_2_o_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
         )
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
+        ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
+        ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        ups_acc_3_o_x = (
-        ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y + ups_axis_x_z*ups_u_1_z - ups_g_r3_x
+        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2
+        ups_acc_3_o_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
+            - ups_g_in_axes2_x
         )
-        ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y
-        ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x
+        ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
+        ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
+        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
+        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_o_in_axes2_x = (
+        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
+            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
         # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_x = (
-        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z
+        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_o_in_axes2_x = (
+        ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_o_y = (
-        ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
-            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y
+        ups_mu_2_o_in_axes2_y = (
+        ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_o_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_o_t +
-            ups_Sigma_2_xx*ups_qdd_2_o_t + ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x -
-            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_o_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x
+        ups_mu_2_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
+            ups_phi_3_o_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+            - ups_g_in_axes2_y*ups_h_2_in_spec2_x
+        )
+        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_yy = (
+        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
+            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
+        )
+        ups_d_c_in_axes2_yz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
+        )
+        ups_d_c_in_axes2_zz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
+            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
+            inv_ups_root_2*ups_J_group_2_in_axes2_xy))
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_c_o_y = (
-        ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z - ups_h_3_x*ups_qdd_2_o_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_o_in_axes2_y = (
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+            ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
+            ups_phi_3_o_t_2)
         )
-        ups_c_o_z = (
-        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
+        ups_c_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
+            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
+        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
+        ups_Q_t = 0.5*ups_d_c_in_axes2_yy
+        ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
+        ups_Q_t_3 = (
+        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        )
+        ups_Q_t_4 = (
+        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        )
+        ups_Q_t_5 = (
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        )
+        ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
+        ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
+        ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
+        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
+        ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_xy = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
+            - axis_z_ups_axes2_y*ups_Q_t_6
+        )
+        ups_Q_xz = (
+        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_6
+        )
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_yz = (
+        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_7
+        )
+        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
+        ups_Q_zz = -2.0*ups_Q_t_11
         # (ups-U) velocity and gravity terms of the leg force
-        ups_U_in_base_x = (
-        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z
+        ups_U_x = (
+        axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_x*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_y = (
-        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        ups_U_y = (
+        axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_y*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_y*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_z = (
-        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        ups_U_z = (
+        axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_z*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
+        # (M_ta) coupling block of M
+        ups_M_ta_t = -ups_Q_xy*ups_q_z
+        ups_M_ta_t_2 = ups_Q_xz*ups_q_y
+        ups_M_ta_t_3 = ups_M_ta_t + ups_M_ta_t_2
+        ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x
+        ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
+        ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
+        ups_M_ta_t_7 = ups_Q_yz*ups_q_x
+        ups_M_ta_t_8 = ups_M_ta_t + ups_M_ta_t_7
+        ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
+        ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
+        ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
+        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        # (M_aa) rotational block of M
+        ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z
+        ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y + ups_M_ta_t_8*ups_q_z
+        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z
+        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x
+        ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
+        ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
         # (Z_a) rotational part of Z
-        ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z
-        ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z - ups_U_in_base_z*ups_q_in_base_x
-        ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x - ups_U_in_base_x*ups_q_in_base_y
+        ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z
+        ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
+        ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
-        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
-        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z
+        ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
+        ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17, ups_M_ta_t_3,
+        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_M_ta_t_3,
             ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
             ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
-            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_in_base_x,
-            ups_U_in_base_y, ups_U_in_base_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
+            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z,
+            ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
     (
-    total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
-        total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
-        total_ups_yz_2, total_ups_zx, total_ups_zy, total_ups_zz_2, total_ups_xx_3,
-        total_ups_xy_3, total_ups_xz_3, total_ups_yy_3, total_ups_yz_3, total_ups_zz_3,
-        total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2,
+    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
+        M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
+        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz, Z_t_ups_x,
+        Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_ups_xx
-    M_tt_yy = m_star - total_ups_yy
-    M_tt_zz = m_star - total_ups_zz
+    M_tt_xx = M_tt_ups_xx + m_star
+    M_tt_yy = M_tt_ups_yy + m_star
+    M_tt_zz = M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_ups_xy_2
-    M_ta_xz = total_ups_xz_2 - h_star_in_base_y
-    M_ta_yx = total_ups_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_ups_yz_2
-    M_ta_zx = h_star_in_base_y + total_ups_zx
-    M_ta_zy = -h_star_in_base_x - total_ups_zy
+    M_ta_xy = M_ta_ups_xy + h_star_z
+    M_ta_xz = M_ta_ups_xz - h_star_y
+    M_ta_yx = M_ta_ups_yx - h_star_z
+    M_ta_yz = M_ta_ups_yz + h_star_x
+    M_ta_zx = M_ta_ups_zx + h_star_y
+    M_ta_zy = M_ta_ups_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_ups_xx_3
-    M_aa_xy = J_star_t_9 + total_ups_xy_3
-    M_aa_xz = J_star_t_10 - total_ups_xz_3
-    M_aa_yy = J_star_t_13 - total_ups_yy_3
-    M_aa_yz = J_star_t_15 + total_ups_yz_3
-    M_aa_zz = J_star_t_17 - total_ups_zz_3
+    M_aa_xx = J_star_xx + M_aa_ups_xx
+    M_aa_xy = J_star_xy + M_aa_ups_xy
+    M_aa_xz = J_star_xz + M_aa_ups_xz
+    M_aa_yy = J_star_yy + M_aa_ups_yy
+    M_aa_yz = J_star_yz + M_aa_ups_yz
+    M_aa_zz = J_star_zz + M_aa_ups_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_ups_x
-    Z_t_y = Z_p_y + total_ups_y
-    Z_t_z = Z_p_z + total_ups_z
+    Z_t_x = Z_p_x + Z_t_ups_x
+    Z_t_y = Z_p_y + Z_t_ups_y
+    Z_t_z = Z_p_z + Z_t_ups_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_ups_x_2
-    Z_a_y = Z_q_in_base_y + total_ups_y_2
-    Z_a_z = Z_q_in_base_z + total_ups_z_2
+    Z_a_x = Z_a_ups_x + Z_q_x
+    Z_a_y = Z_a_ups_y + Z_q_y
+    Z_a_z = Z_a_ups_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_ups_xy
-    out_M[6] = -total_ups_xy
-    out_M[2] = -total_ups_xz
-    out_M[12] = -total_ups_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_ups_yz
-    out_M[13] = -total_ups_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_ups_xx_2
-    out_M[18] = total_ups_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_ups_yy_2
-    out_M[25] = -total_ups_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_ups_zz_2
-    out_M[32] = -total_ups_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1778,9 +1832,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -1792,8 +1848,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1833,48 +1890,49 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-            ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+            ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
+            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -1887,179 +1945,175 @@ def _run_M(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = inv_ups_root_2*ups_S_x
+        ups_w_3_y = inv_ups_root_2*ups_S_y
+        ups_w_3_z = inv_ups_root_2*ups_S_z
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
-        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
-        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
+        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_yy = (
-        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
+        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_yy = (
+        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
+            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
         )
-        ups_d_c_yz = (
-        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
-            inv_ups_root_2*ups_J_group_2_yz)
+        ups_d_c_in_axes2_yz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
         )
-        ups_d_c_zz = (
-        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
-            inv_ups_root_2*ups_J_group_2_yy))
+        ups_d_c_in_axes2_zz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy))
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        ups_Q_t = 0.5*ups_d_c_yy
-        ups_Q_t_2 = 0.5*ups_d_c_zz
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z - axis_z_ups_axes2_z*ups_w_3_y
+        axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x - axis_z_ups_axes2_x*ups_w_3_z
+        axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y - axis_z_ups_axes2_y*ups_w_3_x
+        ups_Q_t = 0.5*ups_d_c_in_axes2_yy
+        ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
-            ups_axis_x_x*ups_d_phi_3_t
+        ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
         )
         ups_Q_t_4 = (
-        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
-            ups_axis_x_y*ups_d_phi_3_t
+        ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
-            ups_axis_x_z*ups_d_phi_3_t
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            ups_d_phi_3_in_axes2_xy*ups_w_3_z
         )
-        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
-        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
-        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
-        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
-        ups_Q_t_10 = 2.0*ups_Q_t_9
-        ups_Q_t_11 = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
+        ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x
+        ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y
+        ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z
+        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
+        ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_xy = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
+            - axis_z_ups_axes2_y*ups_Q_t_6
         )
-        ups_Q_t_12 = (
-        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
+        ups_Q_xz = (
+        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
-        ups_Q_t_14 = 2.0*ups_Q_t_13
-        ups_Q_t_15 = (
-        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_yz = (
+        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
-        ups_Q_t_17 = 2.0*ups_Q_t_16
+        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
+        ups_Q_zz = -2.0*ups_Q_t_11
         # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z
-        ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y
-        ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2
-        ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x
-        ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x
-        ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y
-        ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x
-        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
-        ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x
-        ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y
-        ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x
+        ups_M_ta_t = -ups_Q_xy*ups_q_z
+        ups_M_ta_t_2 = ups_Q_xz*ups_q_y
+        ups_M_ta_t_3 = ups_M_ta_t + ups_M_ta_t_2
+        ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x
+        ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
+        ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
+        ups_M_ta_t_7 = ups_Q_yz*ups_q_x
+        ups_M_ta_t_8 = ups_M_ta_t + ups_M_ta_t_7
+        ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
+        ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
+        ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
         ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
         # (M_aa) rotational block of M
-        ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y
-        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y
-        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z
-        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x
-        ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z
-        ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x
+        ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z
+        ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y + ups_M_ta_t_8*ups_q_z
+        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z
+        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x
+        ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
+        ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17, ups_M_ta_t_3,
+        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_M_ta_t_3,
             ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
             ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
             ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6,
         ))
     (
-    total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
-        total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
-        total_ups_yz_2, total_ups_zx, total_ups_zy, total_ups_zz_2, total_ups_xx_3,
-        total_ups_xy_3, total_ups_xz_3, total_ups_yy_3, total_ups_yz_3, total_ups_zz_3,
+    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, M_ta_xx, M_ta_ups_xy,
+        M_ta_ups_xz, M_ta_ups_yx, M_ta_t, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy, M_ta_zz,
+        M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_ups_xx
-    M_tt_yy = m_star - total_ups_yy
-    M_tt_zz = m_star - total_ups_zz
+    M_tt_xx = M_tt_ups_xx + m_star
+    M_tt_yy = M_tt_ups_yy + m_star
+    M_tt_zz = M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_ups_xy_2
-    M_ta_xz = total_ups_xz_2 - h_star_in_base_y
-    M_ta_yx = total_ups_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_ups_yz_2
-    M_ta_zx = h_star_in_base_y + total_ups_zx
-    M_ta_zy = -h_star_in_base_x - total_ups_zy
+    M_ta_xy = M_ta_ups_xy + h_star_z
+    M_ta_xz = M_ta_ups_xz - h_star_y
+    M_ta_yx = M_ta_ups_yx - h_star_z
+    M_ta_yz = M_ta_ups_yz + h_star_x
+    M_ta_zx = M_ta_ups_zx + h_star_y
+    M_ta_zy = M_ta_ups_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_ups_xx_3
-    M_aa_xy = J_star_t_9 + total_ups_xy_3
-    M_aa_xz = J_star_t_10 - total_ups_xz_3
-    M_aa_yy = J_star_t_13 - total_ups_yy_3
-    M_aa_yz = J_star_t_15 + total_ups_yz_3
-    M_aa_zz = J_star_t_17 - total_ups_zz_3
+    M_aa_xx = J_star_xx + M_aa_ups_xx
+    M_aa_xy = J_star_xy + M_aa_ups_xy
+    M_aa_xz = J_star_xz + M_aa_ups_xz
+    M_aa_yy = J_star_yy + M_aa_ups_yy
+    M_aa_yz = J_star_yz + M_aa_ups_yz
+    M_aa_zz = J_star_zz + M_aa_ups_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_ups_xy
-    out_M[6] = -total_ups_xy
-    out_M[2] = -total_ups_xz
-    out_M[12] = -total_ups_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = -total_ups_yz
-    out_M[13] = -total_ups_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = total_ups_xx_2
-    out_M[18] = total_ups_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_ups_yy_2
-    out_M[25] = -total_ups_yy_2
+    out_M[10] = -M_ta_t
+    out_M[25] = -M_ta_t
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_ups_zz_2
-    out_M[32] = -total_ups_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2077,8 +2131,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2131,56 +2186,75 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -2193,185 +2267,195 @@ def _run_Z(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-u_1) centripetal acceleration of the connection point
         ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        ups_u_1_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_u_1_x + axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z
+        )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-u_1) centripetal acceleration of the connection point
-        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
-        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
-        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
-        ups_u_1_tip_z = (
-        axis_z_ups_axes2_in_base_x*ups_u_1_x + axis_z_ups_axes2_in_base_y*ups_u_1_y +
-            axis_z_ups_axes2_in_base_z*ups_u_1_z
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        ups_rel_o_z = ups_u_1_tip_z - ups_bias_z
-        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        ups_qdd_2_o_t = (
-        inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z
+        ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
+        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2
+        ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x
-        ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y
+        ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
+        ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_xy = -2.0*ups_W_2_xy - ups_qdd_2_o_t
-        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
-        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
-        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_x = (
-        -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 +
-            ups_W_2_t_3)
+        ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_B_2_o_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
         )
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
+        ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
+        ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        ups_acc_3_o_x = (
-        ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y + ups_axis_x_z*ups_u_1_z - ups_g_r3_x
+        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2
+        ups_acc_3_o_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
+            - ups_g_in_axes2_x
         )
-        ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y
-        ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x
+        ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
+        ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
+        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_o_in_axes2_x = (
+        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
+            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
         # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_x = (
-        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z
+        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_o_in_axes2_x = (
+        ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_o_y = (
-        ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
-            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y
+        ups_mu_2_o_in_axes2_y = (
+        ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_o_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_o_t +
-            ups_Sigma_2_xx*ups_qdd_2_o_t + ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x -
-            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_o_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x
+        ups_mu_2_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
+            ups_phi_3_o_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+            - ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_c_o_y = (
-        ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z - ups_h_3_x*ups_qdd_2_o_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_o_in_axes2_y = (
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+            ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
+            ups_phi_3_o_t_2)
         )
-        ups_c_o_z = (
-        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
+        ups_c_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
+            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-U) velocity and gravity terms of the leg force
-        ups_U_in_base_x = (
-        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z
+        ups_U_x = (
+        axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_x*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_y = (
-        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        ups_U_y = (
+        axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_y*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_y*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_z = (
-        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        ups_U_z = (
+        axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_z*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         # (Z_a) rotational part of Z
-        ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z
-        ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z - ups_U_in_base_z*ups_q_in_base_x
-        ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x - ups_U_in_base_x*ups_q_in_base_y
+        ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z
+        ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
+        ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ups_U_in_base_x, ups_U_in_base_y, ups_U_in_base_z, ups_Z_a_t, ups_Z_a_t_2,
-            ups_Z_a_t_3,
+        ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
         ))
-    total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
+    Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_ups_x
-    Z_t_y = Z_p_y + total_ups_y
-    Z_t_z = Z_p_z + total_ups_z
+    Z_t_x = Z_p_x + Z_t_ups_x
+    Z_t_y = Z_p_y + Z_t_ups_y
+    Z_t_z = Z_p_z + Z_t_ups_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_ups_x_2
-    Z_a_y = Z_q_in_base_y + total_ups_y_2
-    Z_a_z = Z_q_in_base_z + total_ups_z_2
+    Z_a_x = Z_a_ups_x + Z_q_x
+    Z_a_y = Z_a_ups_y + Z_q_y
+    Z_a_z = Z_a_ups_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2427,18 +2511,18 @@ def _run_H(m, X):
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -2450,31 +2534,33 @@ def _run_H(m, X):
         # (ups-rho2_1) squared amplitude
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-w_2) reciprocal vector 2
+        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
+        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
+        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
         # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
-        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
-        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y
+        ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
+        ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_2) >
             _TOLERANCE * 0.8))
         )
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = ups_w_3_x
+        out_H[_H_ups[1][leg]] = ups_w_3_y
+        out_H[_H_ups[2][leg]] = ups_w_3_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
@@ -2486,8 +2572,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2553,88 +2640,102 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -2647,194 +2748,210 @@ def _run_required(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
-        # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
-        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
-        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
         ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
-        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
-        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
-        ups_S_ddot_tip_z = (
-        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
-            axis_z_ups_axes2_in_base_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z
+        )
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
-        ups_qdd_1_t = (
-        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_x = (
-        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z -
-            ups_g_r3_x
-        )
-        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
-        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_t = ups_qdd_1*ups_s_2
-        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
+        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
-        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
-        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
+        ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
-        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
-        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_B_2_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        )
+        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
+        ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2
+        ups_acc_3_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
+        )
+        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
-        ups_phi_3_x = (
-        -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3)
+        ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_in_axes2_x = (
+        ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_t -
+            ups_phi_3_t_2) - ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
         )
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_x = (
-        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
-            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
-            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
-            ups_acc_3_z*ups_h_3_z
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_in_axes2_x = (
+        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
+            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_y = (
-        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
-            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
-            ups_g_r3_x*ups_h_2_y
+        ups_mu_2_in_axes2_y = (
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
-            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
-            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
-            ups_g_r3_y*ups_h_2_x
+        ups_mu_2_in_axes2_z = (
+        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
+            ups_phi_3_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_in_axes2_y = (
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
+            ups_phi_3_t_2)
+        )
+        ups_c_in_axes2_z = (
+        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        )
+        ups_c_x = (
+        axis_y_ups_axes2_x*ups_c_in_axes2_y + axis_z_ups_axes2_x*ups_c_in_axes2_z -
+            axis_x_ups_axes2_x*ups_phi_3_in_axes2_x
+        )
         ups_c_y = (
-        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        axis_y_ups_axes2_y*ups_c_in_axes2_y + axis_z_ups_axes2_y*ups_c_in_axes2_z -
+            axis_x_ups_axes2_y*ups_phi_3_in_axes2_x
         )
         ups_c_z = (
-        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
-        )
-        ups_c_in_base_x = (
-        axis_y_ups_axes2_x*ups_c_y + axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x
-        )
-        ups_c_in_base_y = (
-        axis_y_ups_axes2_y*ups_c_y + axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x
-        )
-        ups_c_in_base_z = (
-        axis_y_ups_axes2_z*ups_c_y + axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x
+        axis_y_ups_axes2_z*ups_c_in_axes2_y + axis_z_ups_axes2_z*ups_c_in_axes2_z -
+            axis_x_ups_axes2_z*ups_phi_3_in_axes2_x
         )
         # (R_a) moment that actuators and external wrench must give
-        ups_R_a_t = ups_c_in_base_z*ups_q_in_base_y - ups_c_in_base_y*ups_q_in_base_z
-        ups_R_a_t_2 = ups_c_in_base_x*ups_q_in_base_z - ups_c_in_base_z*ups_q_in_base_x
-        ups_R_a_t_3 = ups_c_in_base_y*ups_q_in_base_x - ups_c_in_base_x*ups_q_in_base_y
+        ups_R_a_t = ups_c_y*ups_q_z - ups_c_z*ups_q_y
+        ups_R_a_t_2 = ups_c_z*ups_q_x - ups_c_x*ups_q_z
+        ups_R_a_t_3 = ups_c_x*ups_q_y - ups_c_y*ups_q_x
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z
+        ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
+        ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ups_c_in_base_x, ups_c_in_base_y, ups_c_in_base_z, ups_R_a_t, ups_R_a_t_2,
-            ups_R_a_t_3,
+        ups_c_x, ups_c_y, ups_c_z, ups_R_a_t, ups_R_a_t_2, ups_R_a_t_3,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
-    total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_ups_x, R_a_ups_y, R_a_ups_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_ups_x
-    R_t_y = f_p_y - total_ups_y
-    R_t_z = f_p_z - total_ups_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_ups_x_2
-    R_a_y = mu_p_in_base_y - total_ups_y_2
-    R_a_z = mu_p_in_base_z - total_ups_z_2
+    R_a_x = R_a_ups_x + mu_p_x
+    R_a_y = R_a_ups_y + mu_p_y
+    R_a_z = R_a_ups_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -2915,28 +3032,29 @@ def _run_inverse_kinematics(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-q_1) displacement of joint 1
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        # (ups-q_1) displacement of joint 1
-        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
         # (ups-q_2) displacement of joint 2
-        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1)
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_in_axes1_z, inv_ups_root_2*ups_root_1)
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
+        # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
+        # (ups-q_2) displacement of joint 2
         out_q[_q_ups[1][leg]] = ups_q_2
+        # (ups-q_3) displacement of joint 3
         out_q[_q_ups[2][leg]] = ups_root_2
     return ok, (out_q,)
 
@@ -3003,18 +3121,18 @@ def _run_joint_rates(m, X, V):
             ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -3027,57 +3145,59 @@ def _run_joint_rates(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_x = t_dot_x + omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_y = t_dot_y + omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_z = t_dot_z + omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        inv_ups_root_2 = 1.0/ups_root_2
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
-        inv_ups_root_2*(ups_S_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
-            ups_S_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
-            ups_S_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x))
-        )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
+        inv_ups_root_2*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
+            ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
+            ups_S_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y))
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
+        # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
+        # (ups-qd_2) rate of joint 2
         out_qd[_qd_ups[1][leg]] = ups_qd_2
-        out_qd[_qd_ups[2][leg]] = ups_S_dot_tip_x
+        # (ups-qd_3) rate of joint 3
+        out_qd[_qd_ups[2][leg]] = ups_S_dot_in_axes2_x
     return ok, (out_qd,)
 
 
@@ -3156,18 +3276,18 @@ def _run_joint_accelerations(m, X, V, A):
             ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -3180,94 +3300,101 @@ def _run_joint_accelerations(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        inv_ups_root_2 = 1.0/ups_root_2
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t
-        ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_omega_1_t*ups_qd_2*ups_root_2
+        ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z
+        ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1
         # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
         ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_x = (
-        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z +
-            ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 + ups_qd_2*ups_qd_2)
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
-        ups_rel_z = (
-        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
-            axis_z_ups_axes2_in_base_z*ups_S_ddot_z - ups_bias_z
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z -
+            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
+        )
+        ups_rel_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z - ups_bias_in_axes2_z
         )
         # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
         ups_qdd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
-            axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) + ups_omega_1_t*ups_omega_1_t_2
+            axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) -
+            ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
+        # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
+        # (ups-qdd_2) acceleration of joint 2
         out_qdd[_qdd_ups[1][leg]] = ups_qdd_2
-        out_qdd[_qdd_ups[2][leg]] = ups_rel_x
+        # (ups-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_ups[2][leg]] = ups_rel_in_axes2_x
     return ok, (out_qdd,)
 
 
@@ -3341,27 +3468,29 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_link3_mass,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -3374,176 +3503,188 @@ def _run_legs(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
         ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
-        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
-        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
-        ups_S_ddot_tip_z = (
-        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
-            axis_z_ups_axes2_in_base_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z
+        )
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
-        ups_qdd_1_t = (
-        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_x = (
-        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z -
-            ups_g_r3_x
-        )
-        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
-        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_t = ups_qdd_1*ups_s_2
-        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
+        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
-        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
-        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
+        ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
-        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
-        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_B_2_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        )
+        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
+        ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2
+        ups_acc_3_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
+        )
+        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_x = (
-        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
-            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
-            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
-            ups_acc_3_z*ups_h_3_z
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_mu_2_t_3 = ups_qd_2*ups_qd_2
+        ups_mu_2_in_axes2_x = (
+        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
+            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_y = (
-        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
-            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
-            ups_g_r3_x*ups_h_2_y
+        ups_mu_2_in_axes2_y = (
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
-            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
-            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
-            ups_g_r3_y*ups_h_2_x
+        ups_mu_2_in_axes2_z = (
+        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
+            ups_mu_2_t_2) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
-        ups_c_y = (
-        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_in_axes2_y = (
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
+            ups_mu_2_t_3)
         )
-        ups_c_z = (
-        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
+        ups_c_in_axes2_z = (
+        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        ups_c_true_in_axes2_x = (
+        ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z - ups_acc_3_in_axes2_x*ups_link3_mass -
+            ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y - ups_h_3_in_spec2_x*(-ups_mu_2_t_2 -
+            ups_mu_2_t_3)
+        )
+        ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass
+        ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass
         ups_c_true_x = (
-        ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y + ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) -
-            ups_acc_3_x*ups_link3_mass
+        axis_x_ups_axes2_x*ups_c_true_in_axes2_x + axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_x*ups_c_true_in_axes2_z
         )
-        ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass
-        ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass
-        ups_c_true_in_base_x = (
-        axis_y_ups_axes2_x*ups_c_true_y + axis_z_ups_axes2_in_base_x*ups_c_true_z +
-            ups_axis_x_x*ups_c_true_x
+        ups_c_true_y = (
+        axis_x_ups_axes2_y*ups_c_true_in_axes2_x + axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_y*ups_c_true_in_axes2_z
         )
-        ups_c_true_in_base_y = (
-        axis_y_ups_axes2_y*ups_c_true_y + axis_z_ups_axes2_in_base_y*ups_c_true_z +
-            ups_axis_x_y*ups_c_true_x
-        )
-        ups_c_true_in_base_z = (
-        axis_y_ups_axes2_z*ups_c_true_y + axis_z_ups_axes2_in_base_z*ups_c_true_z +
-            ups_axis_x_z*ups_c_true_x
+        ups_c_true_z = (
+        axis_x_ups_axes2_z*ups_c_true_in_axes2_x + axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
-        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_in_base_x
-        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_in_base_y
-        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_in_base_z
-        out_drive[_drive_ups[0][leg]] = ups_axis_x_x
-        out_drive[_drive_ups[1][leg]] = ups_axis_x_y
-        out_drive[_drive_ups[2][leg]] = ups_axis_x_z
+        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
+        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_y
+        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_z
+        # (ups-w_3) reciprocal vector 3
+        out_drive[_drive_ups[0][leg]] = axis_x_ups_axes2_x
+        out_drive[_drive_ups[1][leg]] = axis_x_ups_axes2_y
+        out_drive[_drive_ups[2][leg]] = axis_x_ups_axes2_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -3551,7 +3692,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3591,20 +3735,21 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+        ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
-            ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
-            ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = (
@@ -3631,45 +3776,48 @@ def _run_potential(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (potential) potential energy
-        ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1
-        ups_potential_t = (
-        (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y + ups_h_3_y +
-            ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) + (ups_g_r0_z*ups_s_2 -
-            ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x + ups_link2_mass*(ups_b_r0_z*ups_s_2 -
-            ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2)*(ups_h_2_z +
-            ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 - ups_b_r1_y*ups_s_2))
+        ups_potential_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_potential_t_5 = ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1
+        ups_potential_t_6 = (
+        (ups_acc_3_t_3*ups_c_2 - ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_c_2*ups_potential_t_3 -
+            ups_potential_t_5*ups_s_2)) - (ups_acc_3_t*ups_c_1 +
+            ups_acc_3_t_2*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1)) -
+            (ups_acc_3_t_3*ups_s_2 + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
+            ups_potential_t_3*ups_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        ups_potential_t,
+        ups_potential_t_6,
         ))
-    total_ups, = sums
+    potential_ups, = sums
     # (potential) potential energy
-    potential = -potential_t - total_ups
+    potential = potential_ups - potential_t
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3679,7 +3827,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3722,6 +3870,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3732,18 +3881,18 @@ def _run_condition(m, X):
             ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -3757,41 +3906,38 @@ def _run_condition(m, X):
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
-        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
-        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
-        # (spread) rms distance of the platform points from their centroid
-        ups_spread_t = b_c_x - ups_platform_point_x
-        ups_spread_t_2 = b_c_y - ups_platform_point_y
-        ups_spread_t_3 = b_c_z - ups_platform_point_z
-        ups_spread_t_4 = (
-        ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
-        )
-        # (ups-rho2_1) squared amplitude
+        # (ups-w_2) reciprocal vector 2
+        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
+        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
+        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         ups_pivot_size = abs(ups_rho2_1)
-        # (ups-rho2_2) squared amplitude
         ups_pivot_size_2 = abs(ups_rho2_2)
-        # (ups-w_1) reciprocal vector 1
         ups_pivot_size_3 = abs(ups_root_1)
         ups_pivot_size_4 = abs(ups_root_2)
-        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         ups_least_pivots = (
         least(least(least(1.25*sqrt(ups_pivot_size), 1.25*sqrt(ups_pivot_size_2)),
             1.25*ups_pivot_size_3), 1.25*ups_pivot_size_4)
+        )
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y
+        ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
+        ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
+        # (spread) rms distance of the platform points from their centroid
+        ups_spread_t = b_c_in_platform_x - ups_platform_point_x
+        ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y
+        ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z
+        ups_spread_t_4 = (
+        ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
         clear & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
@@ -3801,16 +3947,20 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         ups_spread_t_4,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = ups_w_3_x
+        out_H[_H_ups[1][leg]] = ups_w_3_y
+        out_H[_H_ups[2][leg]] = ups_w_3_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_ups[0][leg]] = ups_least_pivots
-    total_ups, = sums
+    spread_ups, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_ups)
+    spread = spread_t*sqrt(spread_ups)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

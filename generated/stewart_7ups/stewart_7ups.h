@@ -96,19 +96,23 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 7 legs of type ups; copies of the first fill up */
-    stewart_7ups_real ups_J_group_2_xx[8], ups_J_group_2_xy[8], ups_J_group_2_xz[8],
-            ups_J_group_2_yy[8], ups_J_group_2_yz[8], ups_J_group_2_zz[8], ups_Sigma_2_xx[8],
-            ups_Sigma_2_yy[8], ups_Sigma_2_zz[8], ups_b_r0_x[8], ups_b_r0_y[8], ups_b_r0_z[8],
+    stewart_7ups_real ups_J_group_2_in_axes2_xx[8], ups_J_group_2_in_axes2_xy[8],
+            ups_J_group_2_in_axes2_xz[8], ups_J_group_2_in_axes2_yy[8], ups_J_group_2_in_axes2_yz[8],
+            ups_J_group_2_in_axes2_zz[8], ups_Sigma_2_in_axes2_xx[8], ups_Sigma_2_in_axes2_yy[8],
+            ups_Sigma_2_in_axes2_zz[8], ups_acc_3_t[8], ups_acc_3_t_2[8], ups_acc_3_t_3[8],
             ups_base_frame_xx[8], ups_base_frame_xy[8], ups_base_frame_xz[8], ups_base_frame_yx[8],
             ups_base_frame_yy[8], ups_base_frame_yz[8], ups_base_frame_zx[8], ups_base_frame_zy[8],
             ups_base_frame_zz[8], ups_base_point_x[8], ups_base_point_y[8], ups_base_point_z[8],
-            ups_branch_1[8], ups_branch_2[8], ups_g_r0_x[8], ups_g_r0_y[8], ups_g_r0_z[8],
-            ups_h_2_x[8], ups_h_2_y[8], ups_h_2_z[8], ups_h_3_x[8], ups_h_3_y[8], ups_h_3_z[8],
-            ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8], ups_platform_point_y[8],
-            ups_platform_point_z[8];
-    stewart_7ups_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
+            ups_branch_1[8], ups_branch_2[8], ups_h_2_in_spec2_x[8], ups_h_2_in_spec2_y[8],
+            ups_h_2_in_spec2_z[8], ups_h_3_in_spec2_x[8], ups_h_3_in_spec2_y[8],
+            ups_h_3_in_spec2_z[8], ups_link2_mass[8], ups_link3_mass[8], ups_platform_point_x[8],
+            ups_platform_point_y[8], ups_platform_point_z[8], ups_potential_t[8],
+            ups_potential_t_2[8], ups_potential_t_3[8];
+    stewart_7ups_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } stewart_7ups_model;
 
 extern const stewart_7ups_params stewart_7ups_default_params;

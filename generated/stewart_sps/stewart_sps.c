@@ -500,19 +500,19 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_sps = 0;
-    real total_sps_x = 0;
-    real total_sps_y = 0;
-    real total_sps_z = 0;
-    real total_sps_xx = 0;
-    real total_sps_xy = 0;
-    real total_sps_xz = 0;
-    real total_sps_yy = 0;
-    real total_sps_yz = 0;
-    real total_sps_zz = 0;
-    real total_sps_x_2 = 0;
-    real total_sps_y_2 = 0;
-    real total_sps_z_2 = 0;
+    real m_star_sps = 0;
+    real h_star_sps_in_platform_x = 0;
+    real h_star_sps_in_platform_y = 0;
+    real h_star_sps_in_platform_z = 0;
+    real J_star_sps_in_platform_xx = 0;
+    real J_star_sps_in_platform_xy = 0;
+    real J_star_sps_in_platform_xz = 0;
+    real J_star_sps_in_platform_yy = 0;
+    real J_star_sps_in_platform_yz = 0;
+    real J_star_sps_in_platform_zz = 0;
+    real b_c_sps_in_platform_x = 0;
+    real b_c_sps_in_platform_y = 0;
+    real b_c_sps_in_platform_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -591,38 +591,48 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         const real sps_branch_1 = signs_sps_branch_1[own];
         static const signed char signs_sps_branch_2[] = {1, 1, 1, 1, 1, 1};
         const real sps_branch_2 = signs_sps_branch_2[own];
+        /* (sps-h_3) first moment of link 3 about the origin of link 3 */
+        const real sps_h_3_in_spec3_x = sps_link3_centre_of_mass_x*sps_link3_mass;
+        const real sps_h_3_in_spec3_y = sps_link3_centre_of_mass_y*sps_link3_mass;
+        const real sps_h_3_in_spec3_z = sps_link3_centre_of_mass_z*sps_link3_mass;
         /* (sps-h_4) first moment of link 4 about the connection point */
-        const real sps_h_4_x = sps_link4_centre_of_mass_x*sps_link4_mass;
-        const real sps_h_4_y = sps_link4_centre_of_mass_y*sps_link4_mass;
-        const real sps_h_4_z = sps_link4_centre_of_mass_z*sps_link4_mass;
-        /* (sps-J_3) inertia tensor of link 3 about the origin of link 3 */
-        const real sps_J_3_t = sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_x;
-        const real sps_J_3_t_2 = sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_y;
-        const real sps_J_3_t_3 = sps_link3_centre_of_mass_z*sps_link3_centre_of_mass_z;
-        const real sps_J_3_t_4 = sps_J_3_t + sps_J_3_t_2 + sps_J_3_t_3;
-        /* (sps-J_4) inertia tensor of link 4 about the connection point */
-        const real sps_J_4_t = sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_x;
-        const real sps_J_4_t_2 = sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_y;
-        const real sps_J_4_t_3 = sps_link4_centre_of_mass_z*sps_link4_centre_of_mass_z;
-        const real sps_J_4_t_4 = sps_J_4_t + sps_J_4_t_2 + sps_J_4_t_3;
+        const real sps_h_4_in_spec3_x = sps_link4_centre_of_mass_x*sps_link4_mass;
+        const real sps_h_4_in_spec3_y = sps_link4_centre_of_mass_y*sps_link4_mass;
+        const real sps_h_4_in_spec3_z = sps_link4_centre_of_mass_z*sps_link4_mass;
         /* (sps-J_group_3) inertia of the links that turn with link 3, each about its reference point */
-        const real sps_J_group_3_xx = sps_link3_inertia_yy + sps_link4_inertia_yy -
-            sps_link3_mass*(sps_J_3_t_2 - sps_J_3_t_4) - sps_link4_mass*(sps_J_4_t_2 -
-            sps_J_4_t_4);
-        const real sps_J_group_3_xy = sps_link3_inertia_yz + sps_link4_inertia_yz -
+        const real sps_J_group_3_t = sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_x;
+        const real sps_J_group_3_t_2 = sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_y;
+        const real sps_J_group_3_t_3 = sps_link3_centre_of_mass_z*sps_link3_centre_of_mass_z;
+        const real sps_J_group_3_t_4 = sps_J_group_3_t + sps_J_group_3_t_2 + sps_J_group_3_t_3;
+        const real sps_J_group_3_t_5 = sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_x;
+        const real sps_J_group_3_t_6 = sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_y;
+        const real sps_J_group_3_t_7 = sps_link4_centre_of_mass_z*sps_link4_centre_of_mass_z;
+        const real sps_J_group_3_t_8 = sps_J_group_3_t_5 + sps_J_group_3_t_6 + sps_J_group_3_t_7;
+        const real sps_J_group_3_in_axes3_xx = sps_link3_inertia_yy + sps_link4_inertia_yy -
+            sps_link3_mass*(sps_J_group_3_t_2 - sps_J_group_3_t_4) -
+            sps_link4_mass*(sps_J_group_3_t_6 - sps_J_group_3_t_8);
+        const real sps_J_group_3_in_axes3_xy = sps_link3_inertia_yz + sps_link4_inertia_yz -
             sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_z*sps_link3_mass -
             sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_z*sps_link4_mass;
-        const real sps_J_group_3_xz = sps_link3_inertia_xy + sps_link4_inertia_xy -
+        const real sps_J_group_3_in_axes3_xz = sps_link3_inertia_xy + sps_link4_inertia_xy -
             sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_y*sps_link3_mass -
             sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_y*sps_link4_mass;
-        const real sps_J_group_3_yy = sps_link3_inertia_zz + sps_link4_inertia_zz -
-            sps_link3_mass*(sps_J_3_t_3 - sps_J_3_t_4) - sps_link4_mass*(sps_J_4_t_3 -
-            sps_J_4_t_4);
-        const real sps_J_group_3_yz = sps_link3_inertia_xz + sps_link4_inertia_xz -
+        const real sps_J_group_3_in_axes3_yy = sps_link3_inertia_zz + sps_link4_inertia_zz -
+            sps_link3_mass*(sps_J_group_3_t_3 - sps_J_group_3_t_4) -
+            sps_link4_mass*(sps_J_group_3_t_7 - sps_J_group_3_t_8);
+        const real sps_J_group_3_in_axes3_yz = sps_link3_inertia_xz + sps_link4_inertia_xz -
             sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_z*sps_link3_mass -
             sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_z*sps_link4_mass;
-        const real sps_J_group_3_zz = sps_link3_inertia_xx + sps_link4_inertia_xx -
-            sps_link3_mass*(sps_J_3_t - sps_J_3_t_4) - sps_link4_mass*(sps_J_4_t - sps_J_4_t_4);
+        const real sps_J_group_3_in_axes3_zz = sps_link3_inertia_xx + sps_link4_inertia_xx -
+            sps_link3_mass*(sps_J_group_3_t - sps_J_group_3_t_4) -
+            sps_link4_mass*(sps_J_group_3_t_5 - sps_J_group_3_t_8);
+        /* (sps-trace_J_3) half the trace of that inertia tensor */
+        const real sps_trace_J_3 = R(0.5)*sps_J_group_3_in_axes3_xx +
+            R(0.5)*sps_J_group_3_in_axes3_yy + R(0.5)*sps_J_group_3_in_axes3_zz;
+        /* (sps-Sigma_3) second moment of mass of the links that turn with link 3 */
+        const real sps_Sigma_3_in_axes3_xx = sps_trace_J_3 - sps_J_group_3_in_axes3_xx;
+        const real sps_Sigma_3_in_axes3_yy = sps_trace_J_3 - sps_J_group_3_in_axes3_yy;
+        const real sps_Sigma_3_in_axes3_zz = sps_trace_J_3 - sps_J_group_3_in_axes3_zz;
         /* (h_star) first moment about the platform origin */
         const real sps_h_star_t = sps_link4_mass*sps_platform_point_x;
         const real sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y;
@@ -638,42 +648,28 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         const real sps_J_star_t_8 = sps_link4_mass*(sps_J_star_t_2 - sps_J_star_t_4);
         const real sps_J_star_t_9 = sps_link4_mass*sps_platform_point_y*sps_platform_point_z;
         const real sps_J_star_t_10 = sps_link4_mass*(sps_J_star_t_3 - sps_J_star_t_4);
-        /* (sps-h_3) first moment of link 3 about the origin of link 3 */
-        const real sps_h_3_x = sps_link3_centre_of_mass_x*sps_link3_mass;
-        const real sps_h_3_y = sps_link3_centre_of_mass_y*sps_link3_mass;
-        const real sps_h_3_z = sps_link3_centre_of_mass_z*sps_link3_mass;
-        /* (sps-trace_J_3) half the trace of that inertia tensor */
-        const real sps_trace_J_3 = R(0.5)*sps_J_group_3_xx + R(0.5)*sps_J_group_3_yy +
-            R(0.5)*sps_J_group_3_zz;
-        /* (sps-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real sps_Sigma_3_xx = sps_trace_J_3 - sps_J_group_3_xx;
-        const real sps_Sigma_3_yy = sps_trace_J_3 - sps_J_group_3_yy;
-        const real sps_Sigma_3_zz = sps_trace_J_3 - sps_J_group_3_zz;
         /* (potential) potential energy */
-        const real sps_g_r0_x = gravity_x*sps_base_frame_xx + gravity_y*sps_base_frame_yx +
+        const real sps_potential_t = gravity_x*sps_base_frame_xx + gravity_y*sps_base_frame_yx +
             gravity_z*sps_base_frame_zx;
-        const real sps_g_r0_y = gravity_x*sps_base_frame_xy + gravity_y*sps_base_frame_yy +
+        const real sps_potential_t_2 = gravity_x*sps_base_frame_xy + gravity_y*sps_base_frame_yy +
             gravity_z*sps_base_frame_zy;
-        const real sps_g_r0_z = gravity_x*sps_base_frame_xz + gravity_y*sps_base_frame_yz +
+        const real sps_potential_t_3 = gravity_x*sps_base_frame_xz + gravity_y*sps_base_frame_yz +
             gravity_z*sps_base_frame_zz;
-        const real sps_b_r0_x = sps_base_frame_xx*sps_base_point_x +
+        const real sps_potential_t_4 = sps_base_frame_xx*sps_base_point_x +
             sps_base_frame_yx*sps_base_point_y + sps_base_frame_zx*sps_base_point_z;
-        const real sps_b_r0_y = sps_base_frame_xy*sps_base_point_x +
+        const real sps_potential_t_5 = sps_base_frame_xy*sps_base_point_x +
             sps_base_frame_yy*sps_base_point_y + sps_base_frame_zy*sps_base_point_z;
-        const real sps_b_r0_z = sps_base_frame_xz*sps_base_point_x +
+        const real sps_potential_t_6 = sps_base_frame_xz*sps_base_point_x +
             sps_base_frame_yz*sps_base_point_y + sps_base_frame_zz*sps_base_point_z;
-        model->sps_J_group_3_xx[leg] = sps_J_group_3_xx;
-        model->sps_J_group_3_xy[leg] = sps_J_group_3_xy;
-        model->sps_J_group_3_xz[leg] = sps_J_group_3_xz;
-        model->sps_J_group_3_yy[leg] = sps_J_group_3_yy;
-        model->sps_J_group_3_yz[leg] = sps_J_group_3_yz;
-        model->sps_J_group_3_zz[leg] = sps_J_group_3_zz;
-        model->sps_Sigma_3_xx[leg] = sps_Sigma_3_xx;
-        model->sps_Sigma_3_yy[leg] = sps_Sigma_3_yy;
-        model->sps_Sigma_3_zz[leg] = sps_Sigma_3_zz;
-        model->sps_b_r0_x[leg] = sps_b_r0_x;
-        model->sps_b_r0_y[leg] = sps_b_r0_y;
-        model->sps_b_r0_z[leg] = sps_b_r0_z;
+        model->sps_J_group_3_in_axes3_xx[leg] = sps_J_group_3_in_axes3_xx;
+        model->sps_J_group_3_in_axes3_xy[leg] = sps_J_group_3_in_axes3_xy;
+        model->sps_J_group_3_in_axes3_xz[leg] = sps_J_group_3_in_axes3_xz;
+        model->sps_J_group_3_in_axes3_yy[leg] = sps_J_group_3_in_axes3_yy;
+        model->sps_J_group_3_in_axes3_yz[leg] = sps_J_group_3_in_axes3_yz;
+        model->sps_J_group_3_in_axes3_zz[leg] = sps_J_group_3_in_axes3_zz;
+        model->sps_Sigma_3_in_axes3_xx[leg] = sps_Sigma_3_in_axes3_xx;
+        model->sps_Sigma_3_in_axes3_yy[leg] = sps_Sigma_3_in_axes3_yy;
+        model->sps_Sigma_3_in_axes3_zz[leg] = sps_Sigma_3_in_axes3_zz;
         model->sps_base_frame_xx[leg] = sps_base_frame_xx;
         model->sps_base_frame_xy[leg] = sps_base_frame_xy;
         model->sps_base_frame_xz[leg] = sps_base_frame_xz;
@@ -688,76 +684,85 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         model->sps_base_point_z[leg] = sps_base_point_z;
         model->sps_branch_1[leg] = sps_branch_1;
         model->sps_branch_2[leg] = sps_branch_2;
-        model->sps_g_r0_x[leg] = sps_g_r0_x;
-        model->sps_g_r0_y[leg] = sps_g_r0_y;
-        model->sps_g_r0_z[leg] = sps_g_r0_z;
-        model->sps_h_3_x[leg] = sps_h_3_x;
-        model->sps_h_3_y[leg] = sps_h_3_y;
-        model->sps_h_3_z[leg] = sps_h_3_z;
-        model->sps_h_4_x[leg] = sps_h_4_x;
-        model->sps_h_4_y[leg] = sps_h_4_y;
-        model->sps_h_4_z[leg] = sps_h_4_z;
+        model->sps_h_3_in_spec3_x[leg] = sps_h_3_in_spec3_x;
+        model->sps_h_3_in_spec3_y[leg] = sps_h_3_in_spec3_y;
+        model->sps_h_3_in_spec3_z[leg] = sps_h_3_in_spec3_z;
+        model->sps_h_4_in_spec3_x[leg] = sps_h_4_in_spec3_x;
+        model->sps_h_4_in_spec3_y[leg] = sps_h_4_in_spec3_y;
+        model->sps_h_4_in_spec3_z[leg] = sps_h_4_in_spec3_z;
         model->sps_link3_mass[leg] = sps_link3_mass;
         model->sps_link4_mass[leg] = sps_link4_mass;
         model->sps_platform_point_x[leg] = sps_platform_point_x;
         model->sps_platform_point_y[leg] = sps_platform_point_y;
         model->sps_platform_point_z[leg] = sps_platform_point_z;
-        total_sps += leg < 6 ? sps_link4_mass : 0;
-        total_sps_x += leg < 6 ? sps_h_star_t : 0;
-        total_sps_y += leg < 6 ? sps_h_star_t_2 : 0;
-        total_sps_z += leg < 6 ? sps_h_star_t_3 : 0;
-        total_sps_xx += leg < 6 ? sps_J_star_t_5 : 0;
-        total_sps_xy += leg < 6 ? sps_J_star_t_6 : 0;
-        total_sps_xz += leg < 6 ? sps_J_star_t_7 : 0;
-        total_sps_yy += leg < 6 ? sps_J_star_t_8 : 0;
-        total_sps_yz += leg < 6 ? sps_J_star_t_9 : 0;
-        total_sps_zz += leg < 6 ? sps_J_star_t_10 : 0;
-        total_sps_x_2 += leg < 6 ? sps_platform_point_x : 0;
-        total_sps_y_2 += leg < 6 ? sps_platform_point_y : 0;
-        total_sps_z_2 += leg < 6 ? sps_platform_point_z : 0;
+        model->sps_potential_t[leg] = sps_potential_t;
+        model->sps_potential_t_2[leg] = sps_potential_t_2;
+        model->sps_potential_t_3[leg] = sps_potential_t_3;
+        model->sps_potential_t_4[leg] = sps_potential_t_4;
+        model->sps_potential_t_5[leg] = sps_potential_t_5;
+        model->sps_potential_t_6[leg] = sps_potential_t_6;
+        m_star_sps += leg < 6 ? sps_link4_mass : 0;
+        h_star_sps_in_platform_x += leg < 6 ? sps_h_star_t : 0;
+        h_star_sps_in_platform_y += leg < 6 ? sps_h_star_t_2 : 0;
+        h_star_sps_in_platform_z += leg < 6 ? sps_h_star_t_3 : 0;
+        J_star_sps_in_platform_xx += leg < 6 ? -sps_J_star_t_5 : 0;
+        J_star_sps_in_platform_xy += leg < 6 ? -sps_J_star_t_6 : 0;
+        J_star_sps_in_platform_xz += leg < 6 ? -sps_J_star_t_7 : 0;
+        J_star_sps_in_platform_yy += leg < 6 ? -sps_J_star_t_8 : 0;
+        J_star_sps_in_platform_yz += leg < 6 ? -sps_J_star_t_9 : 0;
+        J_star_sps_in_platform_zz += leg < 6 ? -sps_J_star_t_10 : 0;
+        b_c_sps_in_platform_x += leg < 6 ? sps_platform_point_x : 0;
+        b_c_sps_in_platform_y += leg < 6 ? sps_platform_point_y : 0;
+        b_c_sps_in_platform_z += leg < 6 ? sps_platform_point_z : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_sps;
+    const real m_star = m_star_sps + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_sps_x;
-    const real h_star_y = h_star_t_2 + total_sps_y;
-    const real h_star_z = h_star_t_3 + total_sps_z;
+    const real h_star_in_platform_x = h_star_sps_in_platform_x + h_star_t;
+    const real h_star_in_platform_y = h_star_sps_in_platform_y + h_star_t_2;
+    const real h_star_in_platform_z = h_star_sps_in_platform_z + h_star_t_3;
     /* (J_star) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_sps_xx;
-    const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_sps_xy;
-    const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_sps_xz;
-    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_sps_yy;
-    const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_sps_yz;
-    const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_sps_zz;
-    const real J_star_t_11 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_xx = J_star_sps_in_platform_xx + platform_inertia_xx -
+        J_star_t_5;
+    const real J_star_in_platform_xy = J_star_sps_in_platform_xy + platform_inertia_xy -
+        J_star_t_6;
+    const real J_star_in_platform_xz = J_star_sps_in_platform_xz + platform_inertia_xz -
+        J_star_t_7;
+    const real J_star_in_platform_yy = J_star_sps_in_platform_yy + platform_inertia_yy -
+        J_star_t_8;
+    const real J_star_in_platform_yz = J_star_sps_in_platform_yz + platform_inertia_yz -
+        J_star_t_9;
+    const real J_star_in_platform_zz = J_star_sps_in_platform_zz + platform_inertia_zz -
+        J_star_t_10;
+    const real J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_12 = R(0.5)*J_star_t_11;
-    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_14 = R(0.5)*J_star_t_13;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.16666666666666666)*total_sps_x_2;
-    const real b_c_y = R(0.16666666666666666)*total_sps_y_2;
-    const real b_c_z = R(0.16666666666666666)*total_sps_z_2;
+    const real b_c_in_platform_x = R(0.16666666666666666)*b_c_sps_in_platform_x;
+    const real b_c_in_platform_y = R(0.16666666666666666)*b_c_sps_in_platform_y;
+    const real b_c_in_platform_z = R(0.16666666666666666)*b_c_sps_in_platform_z;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_12 = J_star_t_12;
     model->J_star_t_14 = J_star_t_14;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->m_star = m_star;
     return OK;
 }
@@ -1452,41 +1457,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1497,26 +1508,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1535,21 +1555,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_8;
-        s[22*w + k] = J_star_t_9;
-        s[23*w + k] = J_star_t_10;
-        s[24*w + k] = J_star_t_13;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1569,27 +1589,32 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -1607,397 +1632,429 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
         /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_v_1_t = sps_c_2*sps_c_3_t;
-        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
-        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
-        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_t = sps_c_3_t*sps_root_2;
-        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
-        const real sps_w_1_t = sps_s_2*sps_s_3;
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
-        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
-        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
-            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
-            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
-            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
-        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
-        const real sps_w_2_t_2 = inv_sps_w_2_t_3*sps_v_1_t_4;
-        const real sps_w_2_t_3 = inv_sps_w_2_t_3*sps_v_1_t_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t_2 = inv_sps_w_2_t_3*sps_v_2_t_2;
-        const real sps_w_1_t_3 = inv_sps_w_2_t_3*sps_v_2_t;
-        /* (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real sps_d_alpha_1_zx = sps_s_2*sps_w_1_t_2;
-        const real sps_d_alpha_1_zy = sps_s_2*sps_w_1_t_3;
-        /* (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real sps_d_alpha_2_xx = sps_v_1_t*sps_w_1_t_2 - sps_s_3*sps_w_2_t_2;
-        const real sps_d_alpha_2_xy = -sps_s_3*sps_w_2_t_3 - sps_v_1_t*sps_w_1_t_3;
-        const real sps_d_alpha_2_yx = sps_c_3_t*sps_w_2_t_2 + sps_v_1_t_2*sps_w_1_t_2;
-        const real sps_d_alpha_2_yy = sps_c_3_t*sps_w_2_t_3 - sps_v_1_t_2*sps_w_1_t_3;
-        /* (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real sps_J_group_3_xx = m->sps_J_group_3_xx[i];
-        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
-        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
-        const real sps_d_mu_3_t = sps_J_group_3_xx*sps_d_alpha_2_xx +
-            sps_J_group_3_xy*sps_d_alpha_2_yx + sps_J_group_3_xz*sps_d_alpha_1_zx;
-        const real sps_J_group_3_yy = m->sps_J_group_3_yy[i];
-        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
-        const real sps_d_mu_3_t_2 = sps_J_group_3_xy*sps_d_alpha_2_xy +
-            sps_J_group_3_yy*sps_d_alpha_2_yy - sps_J_group_3_yz*sps_d_alpha_1_zy;
-        const real sps_h_4_x = m->sps_h_4_x[i];
-        const real sps_d_mu_3_xy = sps_J_group_3_xx*sps_d_alpha_2_xy +
-            sps_J_group_3_xy*sps_d_alpha_2_yy - sps_h_4_x - sps_J_group_3_xz*sps_d_alpha_1_zy;
-        const real sps_d_mu_3_yx = sps_h_4_x + sps_J_group_3_xy*sps_d_alpha_2_xx +
-            sps_J_group_3_yy*sps_d_alpha_2_yx + sps_J_group_3_yz*sps_d_alpha_1_zx;
-        const real sps_J_group_3_zz = m->sps_J_group_3_zz[i];
-        const real sps_h_4_z = m->sps_h_4_z[i];
-        const real sps_d_mu_3_zx = sps_J_group_3_xz*sps_d_alpha_2_xx +
-            sps_J_group_3_yz*sps_d_alpha_2_yx + sps_J_group_3_zz*sps_d_alpha_1_zx - sps_h_4_z;
-        const real sps_h_4_y = m->sps_h_4_y[i];
-        const real sps_d_mu_3_zy = sps_h_4_y + sps_J_group_3_xz*sps_d_alpha_2_xy +
-            sps_J_group_3_yz*sps_d_alpha_2_yy - sps_J_group_3_zz*sps_d_alpha_1_zy;
-        /* (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real sps_d_Gamma_2_y = sps_d_mu_3_xy*sps_s_3 - sps_c_3_t*sps_d_mu_3_t_2;
-        const real sps_d_Gamma_2_z = sps_c_3_t*sps_h_4_y + sps_h_4_z*sps_s_3;
-        /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real sps_d_Gamma_1_y = sps_d_mu_3_t_2*sps_v_1_t_2 + sps_d_mu_3_xy*sps_v_1_t +
-            sps_d_mu_3_zy*sps_s_2;
-        const real sps_d_Gamma_1_z = sps_h_4_z*sps_v_1_t - sps_h_4_y*sps_v_1_t_2;
-        /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real sps_d_G_xz = sps_d_Gamma_1_z*sps_w_1_t_2 - sps_d_Gamma_2_z*sps_w_2_t_2;
-        const real sps_d_G_yz = -sps_d_Gamma_1_z*sps_w_1_t_3 - sps_d_Gamma_2_z*sps_w_2_t_3;
-        /* (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real sps_d_c_xx = sps_d_alpha_1_zx*sps_h_4_z + sps_w_2_t_2*(sps_d_mu_3_t*sps_s_3 -
-            sps_c_3_t*sps_d_mu_3_yx) - sps_d_alpha_2_yx*sps_h_4_x -
-            sps_w_1_t_2*(sps_d_mu_3_t*sps_v_1_t + sps_d_mu_3_yx*sps_v_1_t_2 +
-            sps_d_mu_3_zx*sps_s_2);
-        const real sps_d_c_xy = sps_d_Gamma_2_y*sps_w_2_t_2 - sps_d_Gamma_1_y*sps_w_1_t_2 -
-            sps_d_alpha_1_zy*sps_h_4_z - sps_d_alpha_2_yy*sps_h_4_x;
-        const real sps_d_c_yy = sps_d_Gamma_1_y*sps_w_1_t_3 + sps_d_Gamma_2_y*sps_w_2_t_3 +
-            sps_d_alpha_1_zy*sps_h_4_y + sps_d_alpha_2_xy*sps_h_4_x;
-        /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real sps_Q_t = R(0.5)*sps_d_c_xx;
-        const real sps_Q_t_2 = R(0.5)*sps_d_c_yy;
-        const real sps_Q_t_3 = axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_in_base_x*sps_d_c_xy
-            - sps_axis_z_x*sps_d_G_xz;
-        const real sps_Q_t_4 = axis_x_sps_axes3_y*sps_Q_t + axis_y_sps_axes3_in_base_y*sps_d_c_xy
-            - sps_axis_z_y*sps_d_G_xz;
-        const real sps_Q_t_5 = axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_in_base_z*sps_d_c_xy
-            - sps_axis_z_z*sps_d_G_xz;
-        const real sps_Q_t_6 = axis_y_sps_axes3_in_base_x*sps_Q_t_2 - sps_axis_z_x*sps_d_G_yz;
-        const real sps_Q_t_7 = axis_y_sps_axes3_in_base_y*sps_Q_t_2 - sps_axis_z_y*sps_d_G_yz;
-        const real sps_Q_t_8 = axis_y_sps_axes3_in_base_z*sps_Q_t_2 - sps_axis_z_z*sps_d_G_yz;
-        const real sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_6;
-        const real sps_Q_t_10 = 2*sps_Q_t_9;
-        const real sps_Q_t_11 = axis_x_sps_axes3_x*sps_Q_t_4 + axis_x_sps_axes3_y*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_7 + axis_y_sps_axes3_in_base_y*sps_Q_t_6;
-        const real sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_6;
-        const real sps_Q_t_13 = axis_x_sps_axes3_y*sps_Q_t_4 +
-            axis_y_sps_axes3_in_base_y*sps_Q_t_7;
-        const real sps_Q_t_14 = 2*sps_Q_t_13;
-        const real sps_Q_t_15 = axis_x_sps_axes3_y*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_4 +
-            axis_y_sps_axes3_in_base_y*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_7;
-        const real sps_Q_t_16 = axis_x_sps_axes3_z*sps_Q_t_5 +
-            axis_y_sps_axes3_in_base_z*sps_Q_t_8;
-        const real sps_Q_t_17 = 2*sps_Q_t_16;
-        /* (M_ta) coupling block of M */
-        const real sps_M_ta_t = sps_Q_t_11*sps_q_in_base_z;
-        const real sps_M_ta_t_2 = sps_Q_t_12*sps_q_in_base_y;
-        const real sps_M_ta_t_3 = sps_M_ta_t - sps_M_ta_t_2;
-        const real sps_M_ta_t_4 = sps_Q_t_10*sps_q_in_base_z - sps_Q_t_12*sps_q_in_base_x;
-        const real sps_M_ta_t_5 = sps_Q_t_10*sps_q_in_base_y - sps_Q_t_11*sps_q_in_base_x;
-        const real sps_M_ta_t_6 = sps_Q_t_14*sps_q_in_base_z - sps_Q_t_15*sps_q_in_base_y;
-        const real sps_M_ta_t_7 = sps_Q_t_15*sps_q_in_base_x;
-        const real sps_M_ta_t_8 = sps_M_ta_t - sps_M_ta_t_7;
-        const real sps_M_ta_t_9 = sps_Q_t_11*sps_q_in_base_y - sps_Q_t_14*sps_q_in_base_x;
-        const real sps_M_ta_t_10 = sps_Q_t_15*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_y;
-        const real sps_M_ta_t_11 = sps_Q_t_12*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_x;
-        const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real sps_M_aa_t = sps_M_ta_t_6*sps_q_in_base_z - sps_M_ta_t_10*sps_q_in_base_y;
-        const real sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_y;
-        const real sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_in_base_y + sps_M_ta_t_9*sps_q_in_base_z;
-        const real sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_x;
-        const real sps_M_aa_t_5 = sps_M_ta_t_12*sps_q_in_base_x + sps_M_ta_t_5*sps_q_in_base_z;
-        const real sps_M_aa_t_6 = sps_M_ta_t_5*sps_q_in_base_y - sps_M_ta_t_9*sps_q_in_base_x;
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
         /* (sps-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
         const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
         const real t_dot_x = s[12*w + j];
         const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
+        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
+        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
+        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
+        const real sps_v_2_t = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
+            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
+        const real inv_sps_w_1_t = 1/sps_w_1_t;
+        const real sps_w_1_in_axes3_x = inv_sps_w_1_t*sps_v_2_t;
+        const real sps_w_1_in_axes3_y = inv_sps_w_1_t*sps_v_2_in_axes3_x;
+        /* (sps-w_2) reciprocal vector 2 */
+        const real sps_w_2_in_axes3_x = inv_sps_w_1_t*sps_v_1_in_axes3_y;
+        const real sps_w_2_t = inv_sps_w_1_t*sps_v_1_in_axes3_x;
+        /* (sps-w_4) reciprocal vector 3 */
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
+        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
+        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
+        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
+        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
+        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
+            axis_y_sps_axes3_z*sps_w_4_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
+            axis_y_sps_axes3_x*sps_w_4_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
+            axis_y_sps_axes3_y*sps_w_4_x;
+        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
             axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
-            sps_S_dot_z*sps_axis_z_z;
+        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
+            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
+            sps_S_dot_z*sps_w_4_z;
+        /* (sps-qd_1) rate of joint 1 */
+        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
         /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
-            sps_S_dot_rest_tip_y*sps_v_2_t);
-        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 +
-            sps_S_dot_rest_tip_y*sps_v_1_t_3);
+        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_t = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
         /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
-        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
+        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
         const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
-        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
-        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3;
-        const real sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
+        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
+        /* (sps-W_3) centripetal tensor of link 3 */
+        const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
+        const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
+        const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
         /* (sps-u_1) centripetal acceleration of the connection point */
         const real sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
         const real sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
         const real sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        const real sps_u_1_in_axes3_x = axis_x_sps_axes3_x*sps_u_1_x +
+            axis_x_sps_axes3_y*sps_u_1_y + axis_x_sps_axes3_z*sps_u_1_z;
+        const real sps_u_1_in_axes3_y = axis_y_sps_axes3_x*sps_u_1_x +
+            axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
+        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
+        const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
         /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y;
-        const real sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y;
-        /* (sps-W_3) centripetal tensor of link 3 */
-        const real sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x;
-        const real sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y;
-        const real sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z;
-        const real sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y;
-        const real sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z;
-        const real sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z;
+        const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y;
+        const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y;
         /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
-        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz +
-            sps_beta_3_y);
-        const real sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) -
-            sps_bias_t*sps_omega_2_r1_x;
-        /* (sps-u_1) centripetal acceleration of the connection point */
-        const real sps_u_1_tip_x = axis_x_sps_axes3_x*sps_u_1_x + axis_x_sps_axes3_y*sps_u_1_y +
-            axis_x_sps_axes3_z*sps_u_1_z;
-        const real sps_u_1_tip_y = axis_y_sps_axes3_in_base_x*sps_u_1_x +
-            axis_y_sps_axes3_in_base_y*sps_u_1_y + axis_y_sps_axes3_in_base_z*sps_u_1_z;
+        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
+        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
+            sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
+        const real sps_bias_in_axes3_y = sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x)
+            - sps_bias_t*sps_omega_2_in_axes3_x;
         /* (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real sps_rel_o_x = sps_u_1_tip_x - sps_bias_x;
-        const real sps_rel_o_y = sps_u_1_tip_y - sps_bias_y;
+        const real sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - sps_bias_in_axes3_x;
+        const real sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - sps_bias_in_axes3_y;
+        /* (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real sps_qdd_1_o = inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t +
+            sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x);
         /* (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real sps_qdd_1_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_2_t_2 -
-            sps_rel_o_y*sps_v_2_t);
-        const real sps_qdd_2_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_1_t_4 +
-            sps_rel_o_y*sps_v_1_t_3);
+        const real sps_qdd_2_o = -inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y);
+        /* (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real sps_d_alpha_1_in_axes3_zx = sps_s_2*sps_w_1_in_axes3_x;
+        const real sps_d_alpha_1_in_axes3_zy = sps_s_2*sps_w_1_in_axes3_y;
+        /* (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2 */
+        const real sps_d_alpha_2_in_axes3_xx = sps_e_1_in_axes3_x*sps_w_1_in_axes3_x +
+            sps_s_3*sps_w_2_in_axes3_x;
+        const real sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y -
+            sps_s_3*sps_w_2_t;
+        const real sps_d_alpha_2_in_axes3_yx = sps_c_3*sps_w_2_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_w_1_in_axes3_x;
+        const real sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y -
+            sps_c_3*sps_w_2_t;
         /* (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real sps_alpha_2_o_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1_o*sps_s_2;
-        const real sps_alpha_2_o_y = sps_zeta_2_y - sps_c_2*sps_qdd_1_o;
+        const real sps_alpha_2_o_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1_o*sps_s_2;
+        const real sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1_o;
         /* (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real sps_alpha_3_o_x = sps_zeta_3_x - sps_alpha_2_o_y*sps_c_3_t -
-            sps_qdd_2_o*sps_s_3;
-        const real sps_alpha_3_o_y = sps_c_3_t*sps_qdd_2_o - sps_zeta_3_y -
-            sps_alpha_2_o_y*sps_s_3;
+        const real sps_alpha_3_o_in_axes3_x = sps_zeta_3_in_axes3_x +
+            sps_alpha_2_o_in_axes2_y*sps_c_3 + sps_qdd_2_o*sps_s_3;
+        const real sps_alpha_3_o_in_axes3_y = sps_zeta_3_in_axes3_y + sps_c_3*sps_qdd_2_o -
+            sps_alpha_2_o_in_axes2_y*sps_s_3;
         /* (sps-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real sps_B_3_o_xy = sps_W_3_xy - sps_alpha_2_o_x;
-        const real sps_B_3_o_xz = sps_W_3_xz + sps_alpha_3_o_y;
-        const real sps_B_3_o_yx = sps_W_3_xy + sps_alpha_2_o_x;
-        const real sps_B_3_o_yz = sps_W_3_yz - sps_alpha_3_o_x;
-        const real sps_B_3_o_zx = sps_W_3_xz - sps_alpha_3_o_y;
-        const real sps_B_3_o_zy = sps_W_3_yz + sps_alpha_3_o_x;
-        /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-           about its reference point */
-        const real sps_phi_4_o_z = sps_B_3_o_zx*sps_h_4_y + sps_B_3_o_zy*sps_h_4_z -
-            sps_h_4_x*(sps_W_3_t + sps_W_3_t_2);
-        /* (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        const real sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_x;
+        const real sps_B_3_o_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y;
+        const real sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_x;
+        const real sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x;
+        const real sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y;
+        const real sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x;
+        /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
+           link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real sps_g_tip_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y +
-            axis_x_sps_axes3_z*gravity_z;
-        const real sps_g_tip_y = axis_y_sps_axes3_in_base_x*gravity_x +
-            axis_y_sps_axes3_in_base_y*gravity_y + axis_y_sps_axes3_in_base_z*gravity_z;
-        const real sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y +
-            gravity_z*sps_axis_z_z;
-        /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
-        const real sps_acc_4_o_x = sps_u_1_tip_x - sps_g_tip_x;
-        const real sps_acc_4_o_y = sps_u_1_tip_y - sps_g_tip_y;
-        const real sps_acc_4_o_z = sps_axis_z_x*sps_u_1_x + sps_axis_z_y*sps_u_1_y +
-            sps_axis_z_z*sps_u_1_z - sps_g_tip_z;
+        const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
+            + axis_x_sps_axes3_z*gravity_z;
+        const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
+            + axis_y_sps_axes3_z*gravity_z;
+        const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
+            gravity_z*sps_w_4_z;
+        const real sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - sps_g_in_axes3_x;
+        const real sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - sps_g_in_axes3_y;
+        const real sps_acc_4_o_in_axes3_z = sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y +
+            sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z;
+        /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+           about its reference point */
+        const real sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
+        const real sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
+        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
+        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
+        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
+        const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y +
+            sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_o_t +
+            sps_phi_4_o_t_2);
+        /* (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with
+           link 3, about their reference points */
+        const real sps_J_group_3_in_axes3_xx = m->sps_J_group_3_in_axes3_xx[i];
+        const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
+        const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
+        const real sps_d_mu_3_in_axes3_xx = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zx;
+        const real sps_J_group_3_in_axes3_yy = m->sps_J_group_3_in_axes3_yy[i];
+        const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
+        const real sps_d_mu_3_in_axes3_yy = sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zy;
+        const real sps_d_mu_3_in_axes3_xy = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zy - sps_h_4_in_spec3_x;
+        const real sps_d_mu_3_in_axes3_yx = sps_h_4_in_spec3_x +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zx;
+        const real sps_J_group_3_in_axes3_zz = m->sps_J_group_3_in_axes3_zz[i];
+        const real sps_d_mu_3_in_axes3_zx = sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zx - sps_h_4_in_spec3_z;
+        const real sps_d_mu_3_in_axes3_zy = sps_h_4_in_spec3_y +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy;
         /* (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real sps_Sigma_3_yy = m->sps_Sigma_3_yy[i];
-        const real sps_Sigma_3_zz = m->sps_Sigma_3_zz[i];
-        const real sps_h_3_x = m->sps_h_3_x[i];
-        const real sps_h_3_z = m->sps_h_3_z[i];
-        const real sps_mu_3_o_x = sps_B_3_o_yx*sps_J_group_3_xz + sps_B_3_o_zy*sps_Sigma_3_yy +
-            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_o_z*sps_h_4_z +
-            sps_g_tip_y*sps_h_3_x - sps_B_3_o_yz*sps_Sigma_3_zz - sps_B_3_o_zx*sps_J_group_3_xy -
-            sps_acc_4_o_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z;
-        const real sps_Sigma_3_xx = m->sps_Sigma_3_xx[i];
-        const real sps_h_3_y = m->sps_h_3_y[i];
-        const real sps_mu_3_o_y = sps_B_3_o_xz*sps_Sigma_3_zz + sps_B_3_o_zy*sps_J_group_3_xy +
-            sps_acc_4_o_x*sps_h_4_x + sps_g_tip_z*sps_h_3_y - sps_B_3_o_xy*sps_J_group_3_yz -
-            sps_B_3_o_zx*sps_Sigma_3_xx - sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) -
-            sps_acc_4_o_z*sps_h_4_y - sps_g_tip_x*sps_h_3_x;
-        const real sps_mu_3_o_z = sps_B_3_o_xz*sps_J_group_3_yz + sps_B_3_o_yx*sps_Sigma_3_xx +
-            sps_J_group_3_xy*(sps_W_3_t - sps_W_3_t_2) + sps_acc_4_o_y*sps_h_4_y +
-            sps_g_tip_x*sps_h_3_z - sps_B_3_o_xy*sps_Sigma_3_yy - sps_B_3_o_yz*sps_J_group_3_xz -
-            sps_acc_4_o_x*sps_h_4_z - sps_g_tip_y*sps_h_3_y;
-        const real sps_mu_3_o_r0_y = sps_mu_3_o_x*sps_s_3 - sps_c_3_t*sps_mu_3_o_y;
+        const real sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
+        const real sps_Sigma_3_in_axes3_yy = m->sps_Sigma_3_in_axes3_yy[i];
+        const real sps_Sigma_3_in_axes3_zz = m->sps_Sigma_3_in_axes3_zz[i];
+        const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
+        const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
+        const real sps_mu_3_o_in_axes3_x = sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
+            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + sps_g_in_axes3_y*sps_h_3_in_spec3_x -
+            sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z;
+        const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
+        const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
+        const real sps_mu_3_o_in_axes3_y = sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
+            sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
+            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - sps_g_in_axes3_x*sps_h_3_in_spec3_x;
+        const real sps_mu_3_o_in_axes3_z = sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
+            sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
+            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + sps_g_in_axes3_x*sps_h_3_in_spec3_z -
+            sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+            sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y;
+        const real sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_y +
+            sps_mu_3_o_in_axes3_x*sps_s_3;
+        /* (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_yy +
+            sps_d_mu_3_in_axes3_xy*sps_s_3;
+        const real sps_d_Gamma_2_in_axes3_z = sps_h_4_in_spec3_z*sps_s_3 -
+            sps_c_3*sps_h_4_in_spec3_y;
+        /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real sps_d_Gamma_1_in_axes3_y = sps_d_mu_3_in_axes3_xy*sps_e_1_in_axes3_x +
+            sps_d_mu_3_in_axes3_yy*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zy*sps_s_2;
+        const real sps_d_Gamma_1_in_axes3_z = sps_e_1_in_axes3_x*sps_h_4_in_spec3_z -
+            sps_e_1_in_axes3_y*sps_h_4_in_spec3_y;
         /* (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real sps_Gamma_1_o = sps_mu_3_o_x*sps_v_1_t + sps_mu_3_o_y*sps_v_1_t_2 +
-            sps_mu_3_o_z*sps_s_2;
+        const real sps_Gamma_1_o = sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_z*sps_s_2;
+        /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real sps_d_G_in_axes3_xz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x +
+            sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x;
+        const real sps_d_G_in_axes3_yz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y -
+            sps_d_Gamma_2_in_axes3_z*sps_w_2_t;
+        /* (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real sps_d_c_in_axes3_xx = sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
+            sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
+            sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*sps_e_1_in_axes3_x +
+            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_s_2) -
+            sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_yx + sps_d_mu_3_in_axes3_xx*sps_s_3);
+        const real sps_d_c_in_axes3_xy = sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z -
+            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x -
+            sps_d_Gamma_2_in_axes3_y*sps_w_2_in_axes3_x -
+            sps_d_alpha_2_in_axes3_yy*sps_h_4_in_spec3_x;
+        const real sps_d_c_in_axes3_yy = sps_d_Gamma_2_in_axes3_y*sps_w_2_t +
+            sps_d_alpha_2_in_axes3_xy*sps_h_4_in_spec3_x -
+            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
+            sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y;
         /* (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real sps_c_o_x = sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) -
-            inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t_2 - sps_mu_3_o_r0_y*sps_v_1_t_4) -
-            sps_B_3_o_xy*sps_h_4_z - sps_B_3_o_xz*sps_h_4_x;
-        const real sps_c_o_y = inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t +
-            sps_mu_3_o_r0_y*sps_v_1_t_3) + sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) -
-            sps_B_3_o_yx*sps_h_4_y - sps_B_3_o_yz*sps_h_4_x;
+        const real sps_c_o_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
+            inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
+            sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x;
+        const real sps_c_o_in_axes3_y = inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1_o*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t + sps_phi_4_o_t)
+            - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x;
+        /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real sps_Q_t = R(0.5)*sps_d_c_in_axes3_xx;
+        const real sps_Q_t_2 = R(0.5)*sps_d_c_in_axes3_yy;
+        const real sps_Q_t_3 = axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_x*sps_d_c_in_axes3_xy
+            - sps_d_G_in_axes3_xz*sps_w_4_x;
+        const real sps_Q_t_4 = sps_d_G_in_axes3_xz*sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t -
+            axis_y_sps_axes3_y*sps_d_c_in_axes3_xy;
+        const real sps_Q_t_5 = axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_z*sps_d_c_in_axes3_xy
+            - sps_d_G_in_axes3_xz*sps_w_4_z;
+        const real sps_Q_t_6 = sps_d_G_in_axes3_yz*sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_2;
+        const real sps_Q_t_7 = axis_y_sps_axes3_y*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_y;
+        const real sps_Q_t_8 = axis_y_sps_axes3_z*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_z;
+        const real sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_6;
+        const real sps_Q_xx = -2*sps_Q_t_9;
+        const real sps_Q_xy = axis_x_sps_axes3_x*sps_Q_t_4 + axis_y_sps_axes3_y*sps_Q_t_6 -
+            axis_x_sps_axes3_y*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_7;
+        const real sps_Q_xz = axis_y_sps_axes3_z*sps_Q_t_6 - axis_x_sps_axes3_x*sps_Q_t_5 -
+            axis_x_sps_axes3_z*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_8;
+        const real sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_4;
+        const real sps_Q_yy = -2*sps_Q_t_10;
+        const real sps_Q_yz = axis_x_sps_axes3_z*sps_Q_t_4 - axis_x_sps_axes3_y*sps_Q_t_5 -
+            axis_y_sps_axes3_y*sps_Q_t_8 - axis_y_sps_axes3_z*sps_Q_t_7;
+        const real sps_Q_t_11 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_z*sps_Q_t_8;
+        const real sps_Q_zz = -2*sps_Q_t_11;
         /* (sps-U) velocity and gravity terms of the leg force */
-        const real sps_U_in_base_x = sps_axis_z_x*sps_phi_4_o_z - axis_x_sps_axes3_x*sps_c_o_x -
-            axis_y_sps_axes3_in_base_x*sps_c_o_y;
-        const real sps_U_in_base_y = sps_axis_z_y*sps_phi_4_o_z - axis_x_sps_axes3_y*sps_c_o_x -
-            axis_y_sps_axes3_in_base_y*sps_c_o_y;
-        const real sps_U_in_base_z = sps_axis_z_z*sps_phi_4_o_z - axis_x_sps_axes3_z*sps_c_o_x -
-            axis_y_sps_axes3_in_base_z*sps_c_o_y;
-        /* (Z_a) rotational part of Z */
-        const real sps_Z_a_t = sps_U_in_base_z*sps_q_in_base_y - sps_U_in_base_y*sps_q_in_base_z;
-        const real sps_Z_a_t_2 = sps_U_in_base_x*sps_q_in_base_z -
-            sps_U_in_base_z*sps_q_in_base_x;
-        const real sps_Z_a_t_3 = sps_U_in_base_y*sps_q_in_base_x -
-            sps_U_in_base_x*sps_q_in_base_y;
+        const real sps_U_x = sps_phi_4_o_in_axes3_z*sps_w_4_x -
+            axis_x_sps_axes3_x*sps_c_o_in_axes3_x - axis_y_sps_axes3_x*sps_c_o_in_axes3_y;
+        const real sps_U_y = sps_phi_4_o_in_axes3_z*sps_w_4_y -
+            axis_x_sps_axes3_y*sps_c_o_in_axes3_x - axis_y_sps_axes3_y*sps_c_o_in_axes3_y;
+        const real sps_U_z = sps_phi_4_o_in_axes3_z*sps_w_4_z -
+            axis_x_sps_axes3_z*sps_c_o_in_axes3_x - axis_y_sps_axes3_z*sps_c_o_in_axes3_y;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 3 */
-        const real sps_d_P_3_in_base_x = axis_x_sps_axes3_x*sps_d_mu_3_zx +
-            axis_y_sps_axes3_in_base_x*sps_d_mu_3_zy;
-        const real sps_d_P_3_in_base_y = axis_x_sps_axes3_y*sps_d_mu_3_zx +
-            axis_y_sps_axes3_in_base_y*sps_d_mu_3_zy;
-        const real sps_d_P_3_in_base_z = axis_x_sps_axes3_z*sps_d_mu_3_zx +
-            axis_y_sps_axes3_in_base_z*sps_d_mu_3_zy;
+        const real sps_d_P_3_x = axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_y = axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_y*sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_z = axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy;
+        /* (M_ta) coupling block of M */
+        const real sps_M_ta_t = -sps_Q_xy*sps_q_z;
+        const real sps_M_ta_t_2 = sps_Q_xz*sps_q_y;
+        const real sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2;
+        const real sps_M_ta_t_4 = sps_Q_xx*sps_q_z - sps_Q_xz*sps_q_x;
+        const real sps_M_ta_t_5 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y;
+        const real sps_M_ta_t_6 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z;
+        const real sps_M_ta_t_7 = sps_Q_yz*sps_q_x;
+        const real sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7;
+        const real sps_M_ta_t_9 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y;
+        const real sps_M_ta_t_10 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z;
+        const real sps_M_ta_t_11 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x;
+        const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real sps_M_aa_t = sps_M_ta_t_10*sps_q_y - sps_M_ta_t_6*sps_q_z;
+        const real sps_M_aa_t_2 = sps_M_ta_t_11*sps_q_y + sps_M_ta_t_8*sps_q_z;
+        const real sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_y - sps_M_ta_t_9*sps_q_z;
+        const real sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_z - sps_M_ta_t_11*sps_q_x;
+        const real sps_M_aa_t_5 = sps_M_ta_t_5*sps_q_z - sps_M_ta_t_12*sps_q_x;
+        const real sps_M_aa_t_6 = sps_M_ta_t_9*sps_q_x - sps_M_ta_t_5*sps_q_y;
+        /* (Z_a) rotational part of Z */
+        const real sps_Z_a_t = sps_U_z*sps_q_y - sps_U_y*sps_q_z;
+        const real sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x;
+        const real sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y;
         /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
-        const real sps_M_ya_3_x = sps_d_P_3_in_base_z*sps_q_in_base_y -
-            sps_d_P_3_in_base_y*sps_q_in_base_z;
-        const real sps_M_ya_3_y = sps_d_P_3_in_base_x*sps_q_in_base_z -
-            sps_d_P_3_in_base_z*sps_q_in_base_x;
-        const real sps_M_ya_3_z = sps_d_P_3_in_base_y*sps_q_in_base_x -
-            sps_d_P_3_in_base_x*sps_q_in_base_y;
+        const real sps_M_ya_3_x = sps_d_P_3_z*sps_q_y - sps_d_P_3_y*sps_q_z;
+        const real sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x;
+        const real sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y;
         /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        const real sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z;
-        const real sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x;
-        const real sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + sps_Q_t_10 : sps_Q_t_10;  /* total_sps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + sps_Q_t_11 : sps_Q_t_11;  /* total_sps_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + sps_Q_t_12 : sps_Q_t_12;  /* total_sps_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + sps_Q_t_14 : sps_Q_t_14;  /* total_sps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + sps_Q_t_15 : sps_Q_t_15;  /* total_sps_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + sps_Q_t_17 : sps_Q_t_17;  /* total_sps_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + sps_M_ta_t_3 : sps_M_ta_t_3;  /* total_sps_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + sps_M_ta_t_4 : sps_M_ta_t_4;  /* total_sps_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + sps_M_ta_t_5 : sps_M_ta_t_5;  /* total_sps_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + sps_M_ta_t_6 : sps_M_ta_t_6;  /* total_sps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + sps_M_ta_t_8 : sps_M_ta_t_8;  /* total_sps_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + sps_M_ta_t_9 : sps_M_ta_t_9;  /* total_sps_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + sps_M_ta_t_10 : sps_M_ta_t_10;  /* total_sps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + sps_M_ta_t_11 : sps_M_ta_t_11;  /* total_sps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + sps_M_ta_t_12 : sps_M_ta_t_12;  /* total_sps_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + sps_M_aa_t : sps_M_aa_t;  /* total_sps_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + sps_M_aa_t_2 : sps_M_aa_t_2;  /* total_sps_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + sps_M_aa_t_3 : sps_M_aa_t_3;  /* total_sps_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + sps_M_aa_t_4 : sps_M_aa_t_4;  /* total_sps_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + sps_M_aa_t_5 : sps_M_aa_t_5;  /* total_sps_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + sps_M_aa_t_6 : sps_M_aa_t_6;  /* total_sps_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + sps_U_in_base_x : sps_U_in_base_x;  /* total_sps_x */
-        terms[22*count + k] = add ? terms[22*count + k] + sps_U_in_base_y : sps_U_in_base_y;  /* total_sps_y */
-        terms[23*count + k] = add ? terms[23*count + k] + sps_U_in_base_z : sps_U_in_base_z;  /* total_sps_z */
-        terms[24*count + k] = add ? terms[24*count + k] + sps_Z_a_t : sps_Z_a_t;  /* total_sps_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + sps_Z_a_t_2 : sps_Z_a_t_2;  /* total_sps_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + sps_Z_a_t_3 : sps_Z_a_t_3;  /* total_sps_z_2 */
-        o[0*count + k] = sps_mu_3_o_z;
-        o[1*count + k] = sps_d_P_3_in_base_x;
-        o[2*count + k] = sps_d_P_3_in_base_x;
-        o[3*count + k] = sps_d_P_3_in_base_y;
-        o[4*count + k] = sps_d_P_3_in_base_y;
-        o[5*count + k] = sps_d_P_3_in_base_z;
-        o[6*count + k] = sps_d_P_3_in_base_z;
+        const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
+        const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
+        const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + sps_Q_xx : sps_Q_xx;  /* M_tt_sps_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + sps_Q_xy : sps_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + sps_Q_xz : sps_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + sps_Q_yy : sps_Q_yy;  /* M_tt_sps_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + sps_Q_yz : sps_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + sps_Q_zz : sps_Q_zz;  /* M_tt_sps_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + sps_M_ta_t_3 : sps_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + sps_M_ta_t_4 : sps_M_ta_t_4;  /* M_ta_sps_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + sps_M_ta_t_5 : sps_M_ta_t_5;  /* M_ta_sps_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + sps_M_ta_t_6 : sps_M_ta_t_6;  /* M_ta_sps_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + sps_M_ta_t_8 : sps_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + sps_M_ta_t_9 : sps_M_ta_t_9;  /* M_ta_sps_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + sps_M_ta_t_10 : sps_M_ta_t_10;  /* M_ta_sps_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + sps_M_ta_t_11 : sps_M_ta_t_11;  /* M_ta_sps_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + sps_M_ta_t_12 : sps_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + sps_M_aa_t : sps_M_aa_t;  /* M_aa_sps_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + sps_M_aa_t_2 : sps_M_aa_t_2;  /* M_aa_sps_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + sps_M_aa_t_3 : sps_M_aa_t_3;  /* M_aa_sps_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + sps_M_aa_t_4 : sps_M_aa_t_4;  /* M_aa_sps_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + sps_M_aa_t_5 : sps_M_aa_t_5;  /* M_aa_sps_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + sps_M_aa_t_6 : sps_M_aa_t_6;  /* M_aa_sps_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + sps_U_x : sps_U_x;  /* Z_t_sps_x */
+        terms[22*count + k] = add ? terms[22*count + k] + sps_U_y : sps_U_y;  /* Z_t_sps_y */
+        terms[23*count + k] = add ? terms[23*count + k] + sps_U_z : sps_U_z;  /* Z_t_sps_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + sps_Z_a_t : sps_Z_a_t;  /* Z_a_sps_x */
+        terms[25*count + k] = add ? terms[25*count + k] + sps_Z_a_t_2 : sps_Z_a_t_2;  /* Z_a_sps_y */
+        terms[26*count + k] = add ? terms[26*count + k] + sps_Z_a_t_3 : sps_Z_a_t_3;  /* Z_a_sps_z */
+        /* (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 3 */
+        o[0*count + k] = sps_mu_3_o_in_axes3_z;
+        /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
+           freedom of joint 3 */
+        o[1*count + k] = sps_d_P_3_x;
+        o[2*count + k] = sps_d_P_3_x;
+        o[3*count + k] = sps_d_P_3_y;
+        o[4*count + k] = sps_d_P_3_y;
+        o[5*count + k] = sps_d_P_3_z;
+        o[6*count + k] = sps_d_P_3_z;
+        /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
         o[7*count + k] = sps_M_ya_3_x;
         o[8*count + k] = sps_M_ya_3_x;
         o[9*count + k] = sps_M_ya_3_y;
         o[10*count + k] = sps_M_ya_3_y;
         o[11*count + k] = sps_M_ya_3_z;
         o[12*count + k] = sps_M_ya_3_z;
-        o[13*count + k] = sps_J_group_3_zz;
-        o[14*count + k] = sps_axis_z_x;
-        o[15*count + k] = sps_axis_z_y;
-        o[16*count + k] = sps_axis_z_z;
+        /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 3 */
+        o[13*count + k] = sps_J_group_3_in_axes3_zz;
+        /* (sps-w_4) reciprocal vector 3 */
+        o[14*count + k] = sps_w_4_x;
+        o[15*count + k] = sps_w_4_y;
+        o[16*count + k] = sps_w_4_z;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
         o[17*count + k] = sps_H_a_4_x;
         o[18*count + k] = sps_H_a_4_y;
         o[19*count + k] = sps_H_a_4_z;
-        o[21*count + k] = ((sps_mu_3_o_z + (sps_d_P_3_in_base_x + sps_d_P_3_in_base_y)) +
-            ((sps_d_P_3_in_base_z + sps_M_ya_3_x) + (sps_M_ya_3_y + sps_M_ya_3_z))) +
-            ((sps_J_group_3_zz + (sps_axis_z_x + sps_axis_z_y)) + ((sps_axis_z_z + sps_H_a_4_x) +
-            (sps_H_a_4_y + sps_H_a_4_z)));
+        o[21*count + k] = ((sps_mu_3_o_in_axes3_z + (sps_d_P_3_x + sps_d_P_3_y)) + ((sps_d_P_3_z +
+            sps_M_ya_3_x) + (sps_M_ya_3_y + sps_M_ya_3_z))) + ((sps_J_group_3_in_axes3_zz +
+            (sps_w_4_x + sps_w_4_y)) + ((sps_w_4_z + sps_H_a_4_x) + (sps_H_a_4_y + sps_H_a_4_z)));
         o[20*count + k] = UNLESS(magnitude(sps_rho2_1) >
             TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_rho2_2) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-sps_w_2_t) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_w_1_t) >
             TOLERANCE*R(0.6400000000000001));
     }
 }
@@ -2036,101 +2093,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_sps_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_sps_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_sps_xx;
-        const real total_sps_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_sps_yy;
-        const real total_sps_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_sps_zz;
+        const real M_tt_xx = M_tt_sps_xx + m_star;
+        const real M_tt_sps_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_sps_yy + m_star;
+        const real M_tt_sps_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_sps_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_sps_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_sps_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_sps_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_sps_xz_2 - h_star_in_base_y;
-        const real total_sps_yx = sums[9*w + k];
-        const real M_ta_yx = total_sps_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_sps_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_sps_yz_2;
-        const real total_sps_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_sps_zx;
-        const real total_sps_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_sps_zy;
+        const real M_ta_sps_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_sps_xy + h_star_z;
+        const real M_ta_sps_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_sps_xz - h_star_y;
+        const real M_ta_sps_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_sps_yx - h_star_z;
+        const real M_ta_sps_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_sps_yz + h_star_x;
+        const real M_ta_sps_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_sps_zx + h_star_y;
+        const real M_ta_sps_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_sps_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[21*w + k];
-        const real total_sps_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_sps_xx_3;
-        const real J_star_t_9 = s[22*w + k];
-        const real total_sps_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_sps_xy_3;
-        const real J_star_t_10 = s[23*w + k];
-        const real total_sps_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_sps_xz_3;
-        const real J_star_t_13 = s[24*w + k];
-        const real total_sps_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_sps_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_sps_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_sps_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_sps_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_sps_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_sps_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_sps_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_sps_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_sps_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_sps_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_sps_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_sps_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_sps_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_sps_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_sps_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_sps_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_sps_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_sps_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_sps_x;
+        const real Z_t_sps_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_sps_x;
         const real Z_p_y = s[28*w + k];
-        const real total_sps_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_sps_y;
+        const real Z_t_sps_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_sps_y;
         const real Z_p_z = s[29*w + k];
-        const real total_sps_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_sps_z;
+        const real Z_t_sps_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_sps_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_sps_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_sps_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_sps_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_sps_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_sps_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_sps_z_2;
+        const real Z_a_sps_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_sps_x + Z_q_x;
+        const real Z_a_sps_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_sps_y + Z_q_y;
+        const real Z_a_sps_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_sps_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_sps_xy = sums[1*w + k];
-        M[1*w + k] = -total_sps_xy;
-        M[12*w + k] = -total_sps_xy;
-        const real total_sps_xz = sums[2*w + k];
-        M[2*w + k] = -total_sps_xz;
-        M[24*w + k] = -total_sps_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[12*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[24*w + k] = M_tt_xz;
         M[13*w + k] = M_tt_yy;
-        const real total_sps_yz = sums[4*w + k];
-        M[14*w + k] = -total_sps_yz;
-        M[25*w + k] = -total_sps_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[14*w + k] = M_tt_yz;
+        M[25*w + k] = M_tt_yz;
         M[26*w + k] = M_tt_zz;
-        const real total_sps_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_sps_xx_2;
-        M[36*w + k] = total_sps_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[36*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[48*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[60*w + k] = M_ta_xz;
         M[15*w + k] = M_ta_yx;
         M[37*w + k] = M_ta_yx;
-        const real total_sps_yy_2 = sums[10*w + k];
-        M[16*w + k] = -total_sps_yy_2;
-        M[49*w + k] = -total_sps_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[16*w + k] = -M_ta_t;
+        M[49*w + k] = -M_ta_t;
         M[17*w + k] = M_ta_yz;
         M[61*w + k] = M_ta_yz;
         M[27*w + k] = M_ta_zx;
         M[38*w + k] = M_ta_zx;
         M[28*w + k] = M_ta_zy;
         M[50*w + k] = M_ta_zy;
-        const real total_sps_zz_2 = sums[14*w + k];
-        M[29*w + k] = -total_sps_zz_2;
-        M[62*w + k] = -total_sps_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[29*w + k] = M_ta_zz;
+        M[62*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[39*w + k] = M_aa_xx;
         M[40*w + k] = M_aa_xy;
         M[51*w + k] = M_aa_xy;
@@ -2140,17 +2200,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[53*w + k] = M_aa_yz;
         M[64*w + k] = M_aa_yz;
         M[65*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_sps_xy + total_sps_xz)) + (M_tt_yy + (total_sps_yz +
-            M_tt_zz))) + ((total_sps_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_sps_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_sps_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_t) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -2225,37 +2286,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_12*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_12*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_12*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
-        const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_6*R_xz;
-        const real J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_13 = 2*J_star_t_11 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2268,15 +2335,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_8;
-        s[16*w + k] = J_star_t_9;
-        s[17*w + k] = J_star_t_10;
-        s[18*w + k] = J_star_t_13;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2295,27 +2362,32 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -2333,223 +2405,242 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
         /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
         /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_v_1_t = sps_c_2*sps_c_3_t;
-        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
-        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
-        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
+        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
+        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
+        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
+        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
         /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_t = sps_c_3_t*sps_root_2;
-        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
+        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
+        const real sps_v_2_t = sps_root_2*sps_s_3;
         /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
-        const real sps_w_1_t = sps_s_2*sps_s_3;
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
-        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
-        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
-            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
-            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
-            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
+        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
+            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
+        const real inv_sps_w_1_t = 1/sps_w_1_t;
+        const real sps_w_1_in_axes3_x = inv_sps_w_1_t*sps_v_2_t;
+        const real sps_w_1_in_axes3_y = inv_sps_w_1_t*sps_v_2_in_axes3_x;
         /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
-        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
-        const real sps_w_2_t_2 = inv_sps_w_2_t_3*sps_v_1_t_4;
-        const real sps_w_2_t_3 = inv_sps_w_2_t_3*sps_v_1_t_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t_2 = inv_sps_w_2_t_3*sps_v_2_t_2;
-        const real sps_w_1_t_3 = inv_sps_w_2_t_3*sps_v_2_t;
+        const real sps_w_2_in_axes3_x = inv_sps_w_1_t*sps_v_1_in_axes3_y;
+        const real sps_w_2_t = inv_sps_w_1_t*sps_v_1_in_axes3_x;
+        /* (sps-w_4) reciprocal vector 3 */
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real sps_d_alpha_1_zx = sps_s_2*sps_w_1_t_2;
-        const real sps_d_alpha_1_zy = sps_s_2*sps_w_1_t_3;
+        const real sps_d_alpha_1_in_axes3_zx = sps_s_2*sps_w_1_in_axes3_x;
+        const real sps_d_alpha_1_in_axes3_zy = sps_s_2*sps_w_1_in_axes3_y;
         /* (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real sps_d_alpha_2_xx = sps_v_1_t*sps_w_1_t_2 - sps_s_3*sps_w_2_t_2;
-        const real sps_d_alpha_2_xy = -sps_s_3*sps_w_2_t_3 - sps_v_1_t*sps_w_1_t_3;
-        const real sps_d_alpha_2_yx = sps_c_3_t*sps_w_2_t_2 + sps_v_1_t_2*sps_w_1_t_2;
-        const real sps_d_alpha_2_yy = sps_c_3_t*sps_w_2_t_3 - sps_v_1_t_2*sps_w_1_t_3;
+        const real sps_d_alpha_2_in_axes3_xx = sps_e_1_in_axes3_x*sps_w_1_in_axes3_x +
+            sps_s_3*sps_w_2_in_axes3_x;
+        const real sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y -
+            sps_s_3*sps_w_2_t;
+        const real sps_d_alpha_2_in_axes3_yx = sps_c_3*sps_w_2_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_w_1_in_axes3_x;
+        const real sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y -
+            sps_c_3*sps_w_2_t;
         /* (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real sps_J_group_3_xx = m->sps_J_group_3_xx[i];
-        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
-        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
-        const real sps_d_mu_3_t = sps_J_group_3_xx*sps_d_alpha_2_xx +
-            sps_J_group_3_xy*sps_d_alpha_2_yx + sps_J_group_3_xz*sps_d_alpha_1_zx;
-        const real sps_J_group_3_yy = m->sps_J_group_3_yy[i];
-        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
-        const real sps_d_mu_3_t_2 = sps_J_group_3_xy*sps_d_alpha_2_xy +
-            sps_J_group_3_yy*sps_d_alpha_2_yy - sps_J_group_3_yz*sps_d_alpha_1_zy;
-        const real sps_h_4_x = m->sps_h_4_x[i];
-        const real sps_d_mu_3_xy = sps_J_group_3_xx*sps_d_alpha_2_xy +
-            sps_J_group_3_xy*sps_d_alpha_2_yy - sps_h_4_x - sps_J_group_3_xz*sps_d_alpha_1_zy;
-        const real sps_d_mu_3_yx = sps_h_4_x + sps_J_group_3_xy*sps_d_alpha_2_xx +
-            sps_J_group_3_yy*sps_d_alpha_2_yx + sps_J_group_3_yz*sps_d_alpha_1_zx;
-        const real sps_J_group_3_zz = m->sps_J_group_3_zz[i];
-        const real sps_h_4_z = m->sps_h_4_z[i];
-        const real sps_d_mu_3_zx = sps_J_group_3_xz*sps_d_alpha_2_xx +
-            sps_J_group_3_yz*sps_d_alpha_2_yx + sps_J_group_3_zz*sps_d_alpha_1_zx - sps_h_4_z;
-        const real sps_h_4_y = m->sps_h_4_y[i];
-        const real sps_d_mu_3_zy = sps_h_4_y + sps_J_group_3_xz*sps_d_alpha_2_xy +
-            sps_J_group_3_yz*sps_d_alpha_2_yy - sps_J_group_3_zz*sps_d_alpha_1_zy;
+        const real sps_J_group_3_in_axes3_xx = m->sps_J_group_3_in_axes3_xx[i];
+        const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
+        const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
+        const real sps_d_mu_3_in_axes3_xx = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zx;
+        const real sps_J_group_3_in_axes3_yy = m->sps_J_group_3_in_axes3_yy[i];
+        const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
+        const real sps_d_mu_3_in_axes3_yy = sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zy;
+        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
+        const real sps_d_mu_3_in_axes3_xy = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zy - sps_h_4_in_spec3_x;
+        const real sps_d_mu_3_in_axes3_yx = sps_h_4_in_spec3_x +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zx;
+        const real sps_J_group_3_in_axes3_zz = m->sps_J_group_3_in_axes3_zz[i];
+        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
+        const real sps_d_mu_3_in_axes3_zx = sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zx - sps_h_4_in_spec3_z;
+        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
+        const real sps_d_mu_3_in_axes3_zy = sps_h_4_in_spec3_y +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy;
         /* (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real sps_d_Gamma_2_y = sps_d_mu_3_xy*sps_s_3 - sps_c_3_t*sps_d_mu_3_t_2;
-        const real sps_d_Gamma_2_z = sps_c_3_t*sps_h_4_y + sps_h_4_z*sps_s_3;
+        const real sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_yy +
+            sps_d_mu_3_in_axes3_xy*sps_s_3;
+        const real sps_d_Gamma_2_in_axes3_z = sps_h_4_in_spec3_z*sps_s_3 -
+            sps_c_3*sps_h_4_in_spec3_y;
         /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real sps_d_Gamma_1_y = sps_d_mu_3_t_2*sps_v_1_t_2 + sps_d_mu_3_xy*sps_v_1_t +
-            sps_d_mu_3_zy*sps_s_2;
-        const real sps_d_Gamma_1_z = sps_h_4_z*sps_v_1_t - sps_h_4_y*sps_v_1_t_2;
+        const real sps_d_Gamma_1_in_axes3_y = sps_d_mu_3_in_axes3_xy*sps_e_1_in_axes3_x +
+            sps_d_mu_3_in_axes3_yy*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zy*sps_s_2;
+        const real sps_d_Gamma_1_in_axes3_z = sps_e_1_in_axes3_x*sps_h_4_in_spec3_z -
+            sps_e_1_in_axes3_y*sps_h_4_in_spec3_y;
         /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real sps_d_G_xz = sps_d_Gamma_1_z*sps_w_1_t_2 - sps_d_Gamma_2_z*sps_w_2_t_2;
-        const real sps_d_G_yz = -sps_d_Gamma_1_z*sps_w_1_t_3 - sps_d_Gamma_2_z*sps_w_2_t_3;
+        const real sps_d_G_in_axes3_xz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x +
+            sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x;
+        const real sps_d_G_in_axes3_yz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y -
+            sps_d_Gamma_2_in_axes3_z*sps_w_2_t;
         /* (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real sps_d_c_xx = sps_d_alpha_1_zx*sps_h_4_z + sps_w_2_t_2*(sps_d_mu_3_t*sps_s_3 -
-            sps_c_3_t*sps_d_mu_3_yx) - sps_d_alpha_2_yx*sps_h_4_x -
-            sps_w_1_t_2*(sps_d_mu_3_t*sps_v_1_t + sps_d_mu_3_yx*sps_v_1_t_2 +
-            sps_d_mu_3_zx*sps_s_2);
-        const real sps_d_c_xy = sps_d_Gamma_2_y*sps_w_2_t_2 - sps_d_Gamma_1_y*sps_w_1_t_2 -
-            sps_d_alpha_1_zy*sps_h_4_z - sps_d_alpha_2_yy*sps_h_4_x;
-        const real sps_d_c_yy = sps_d_Gamma_1_y*sps_w_1_t_3 + sps_d_Gamma_2_y*sps_w_2_t_3 +
-            sps_d_alpha_1_zy*sps_h_4_y + sps_d_alpha_2_xy*sps_h_4_x;
+        const real sps_d_c_in_axes3_xx = sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
+            sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
+            sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*sps_e_1_in_axes3_x +
+            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_s_2) -
+            sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_yx + sps_d_mu_3_in_axes3_xx*sps_s_3);
+        const real sps_d_c_in_axes3_xy = sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z -
+            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x -
+            sps_d_Gamma_2_in_axes3_y*sps_w_2_in_axes3_x -
+            sps_d_alpha_2_in_axes3_yy*sps_h_4_in_spec3_x;
+        const real sps_d_c_in_axes3_yy = sps_d_Gamma_2_in_axes3_y*sps_w_2_t +
+            sps_d_alpha_2_in_axes3_xy*sps_h_4_in_spec3_x -
+            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
+            sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y;
         /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real sps_Q_t = R(0.5)*sps_d_c_xx;
-        const real sps_Q_t_2 = R(0.5)*sps_d_c_yy;
-        const real sps_Q_t_3 = axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_in_base_x*sps_d_c_xy
-            - sps_axis_z_x*sps_d_G_xz;
-        const real sps_Q_t_4 = axis_x_sps_axes3_y*sps_Q_t + axis_y_sps_axes3_in_base_y*sps_d_c_xy
-            - sps_axis_z_y*sps_d_G_xz;
-        const real sps_Q_t_5 = axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_in_base_z*sps_d_c_xy
-            - sps_axis_z_z*sps_d_G_xz;
-        const real sps_Q_t_6 = axis_y_sps_axes3_in_base_x*sps_Q_t_2 - sps_axis_z_x*sps_d_G_yz;
-        const real sps_Q_t_7 = axis_y_sps_axes3_in_base_y*sps_Q_t_2 - sps_axis_z_y*sps_d_G_yz;
-        const real sps_Q_t_8 = axis_y_sps_axes3_in_base_z*sps_Q_t_2 - sps_axis_z_z*sps_d_G_yz;
-        const real sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_6;
-        const real sps_Q_t_10 = 2*sps_Q_t_9;
-        const real sps_Q_t_11 = axis_x_sps_axes3_x*sps_Q_t_4 + axis_x_sps_axes3_y*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_7 + axis_y_sps_axes3_in_base_y*sps_Q_t_6;
-        const real sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_6;
-        const real sps_Q_t_13 = axis_x_sps_axes3_y*sps_Q_t_4 +
-            axis_y_sps_axes3_in_base_y*sps_Q_t_7;
-        const real sps_Q_t_14 = 2*sps_Q_t_13;
-        const real sps_Q_t_15 = axis_x_sps_axes3_y*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_4 +
-            axis_y_sps_axes3_in_base_y*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_7;
-        const real sps_Q_t_16 = axis_x_sps_axes3_z*sps_Q_t_5 +
-            axis_y_sps_axes3_in_base_z*sps_Q_t_8;
-        const real sps_Q_t_17 = 2*sps_Q_t_16;
-        /* (M_ta) coupling block of M */
-        const real sps_M_ta_t = sps_Q_t_11*sps_q_in_base_z;
-        const real sps_M_ta_t_2 = sps_Q_t_12*sps_q_in_base_y;
-        const real sps_M_ta_t_3 = sps_M_ta_t - sps_M_ta_t_2;
-        const real sps_M_ta_t_4 = sps_Q_t_10*sps_q_in_base_z - sps_Q_t_12*sps_q_in_base_x;
-        const real sps_M_ta_t_5 = sps_Q_t_10*sps_q_in_base_y - sps_Q_t_11*sps_q_in_base_x;
-        const real sps_M_ta_t_6 = sps_Q_t_14*sps_q_in_base_z - sps_Q_t_15*sps_q_in_base_y;
-        const real sps_M_ta_t_7 = sps_Q_t_15*sps_q_in_base_x;
-        const real sps_M_ta_t_8 = sps_M_ta_t - sps_M_ta_t_7;
-        const real sps_M_ta_t_9 = sps_Q_t_11*sps_q_in_base_y - sps_Q_t_14*sps_q_in_base_x;
-        const real sps_M_ta_t_10 = sps_Q_t_15*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_y;
-        const real sps_M_ta_t_11 = sps_Q_t_12*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_x;
-        const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real sps_M_aa_t = sps_M_ta_t_6*sps_q_in_base_z - sps_M_ta_t_10*sps_q_in_base_y;
-        const real sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_y;
-        const real sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_in_base_y + sps_M_ta_t_9*sps_q_in_base_z;
-        const real sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_x;
-        const real sps_M_aa_t_5 = sps_M_ta_t_12*sps_q_in_base_x + sps_M_ta_t_5*sps_q_in_base_z;
-        const real sps_M_aa_t_6 = sps_M_ta_t_5*sps_q_in_base_y - sps_M_ta_t_9*sps_q_in_base_x;
+        const real sps_Q_t = sps_s_2*sps_s_3;
+        const real sps_Q_t_2 = sps_Q_t*sps_s_1 - sps_c_1*sps_c_3;
+        const real sps_Q_t_3 = sps_Q_t*sps_c_1 + sps_c_3*sps_s_1;
+        const real axis_y_sps_axes3_x = sps_Q_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_Q_t_2*sps_base_frame_xx;
+        const real axis_y_sps_axes3_y = sps_Q_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_Q_t_2*sps_base_frame_yx;
+        const real axis_y_sps_axes3_z = sps_Q_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_Q_t_2*sps_base_frame_zx;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
+            axis_y_sps_axes3_z*sps_w_4_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
+            axis_y_sps_axes3_x*sps_w_4_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
+            axis_y_sps_axes3_y*sps_w_4_x;
+        const real sps_Q_t_4 = R(0.5)*sps_d_c_in_axes3_xx;
+        const real sps_Q_t_5 = R(0.5)*sps_d_c_in_axes3_yy;
+        const real sps_Q_t_6 = axis_x_sps_axes3_x*sps_Q_t_4 +
+            axis_y_sps_axes3_x*sps_d_c_in_axes3_xy - sps_d_G_in_axes3_xz*sps_w_4_x;
+        const real sps_Q_t_7 = sps_d_G_in_axes3_xz*sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t_4 -
+            axis_y_sps_axes3_y*sps_d_c_in_axes3_xy;
+        const real sps_Q_t_8 = axis_x_sps_axes3_z*sps_Q_t_4 +
+            axis_y_sps_axes3_z*sps_d_c_in_axes3_xy - sps_d_G_in_axes3_xz*sps_w_4_z;
+        const real sps_Q_t_9 = sps_d_G_in_axes3_yz*sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_5;
+        const real sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_5 - sps_d_G_in_axes3_yz*sps_w_4_y;
+        const real sps_Q_t_11 = axis_y_sps_axes3_z*sps_Q_t_5 - sps_d_G_in_axes3_yz*sps_w_4_z;
+        const real sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_9;
+        const real sps_Q_xx = -2*sps_Q_t_12;
+        const real sps_Q_xy = axis_x_sps_axes3_x*sps_Q_t_7 + axis_y_sps_axes3_y*sps_Q_t_9 -
+            axis_x_sps_axes3_y*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_10;
+        const real sps_Q_xz = axis_y_sps_axes3_z*sps_Q_t_9 - axis_x_sps_axes3_x*sps_Q_t_8 -
+            axis_x_sps_axes3_z*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_11;
+        const real sps_Q_t_13 = axis_y_sps_axes3_y*sps_Q_t_10 - axis_x_sps_axes3_y*sps_Q_t_7;
+        const real sps_Q_yy = -2*sps_Q_t_13;
+        const real sps_Q_yz = axis_x_sps_axes3_z*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_8 -
+            axis_y_sps_axes3_y*sps_Q_t_11 - axis_y_sps_axes3_z*sps_Q_t_10;
+        const real sps_Q_t_14 = axis_x_sps_axes3_z*sps_Q_t_8 + axis_y_sps_axes3_z*sps_Q_t_11;
+        const real sps_Q_zz = -2*sps_Q_t_14;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 3 */
-        const real sps_d_P_3_in_base_x = axis_x_sps_axes3_x*sps_d_mu_3_zx +
-            axis_y_sps_axes3_in_base_x*sps_d_mu_3_zy;
-        const real sps_d_P_3_in_base_y = axis_x_sps_axes3_y*sps_d_mu_3_zx +
-            axis_y_sps_axes3_in_base_y*sps_d_mu_3_zy;
-        const real sps_d_P_3_in_base_z = axis_x_sps_axes3_z*sps_d_mu_3_zx +
-            axis_y_sps_axes3_in_base_z*sps_d_mu_3_zy;
+        const real sps_d_P_3_x = axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_y = axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_y*sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_z = axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy;
+        /* (M_ta) coupling block of M */
+        const real sps_M_ta_t = -sps_Q_xy*sps_q_z;
+        const real sps_M_ta_t_2 = sps_Q_xz*sps_q_y;
+        const real sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2;
+        const real sps_M_ta_t_4 = sps_Q_xx*sps_q_z - sps_Q_xz*sps_q_x;
+        const real sps_M_ta_t_5 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y;
+        const real sps_M_ta_t_6 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z;
+        const real sps_M_ta_t_7 = sps_Q_yz*sps_q_x;
+        const real sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7;
+        const real sps_M_ta_t_9 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y;
+        const real sps_M_ta_t_10 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z;
+        const real sps_M_ta_t_11 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x;
+        const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
+        /* (M_aa) rotational block of M */
+        const real sps_M_aa_t = sps_M_ta_t_10*sps_q_y - sps_M_ta_t_6*sps_q_z;
+        const real sps_M_aa_t_2 = sps_M_ta_t_11*sps_q_y + sps_M_ta_t_8*sps_q_z;
+        const real sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_y - sps_M_ta_t_9*sps_q_z;
+        const real sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_z - sps_M_ta_t_11*sps_q_x;
+        const real sps_M_aa_t_5 = sps_M_ta_t_5*sps_q_z - sps_M_ta_t_12*sps_q_x;
+        const real sps_M_aa_t_6 = sps_M_ta_t_9*sps_q_x - sps_M_ta_t_5*sps_q_y;
         /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
-        const real sps_M_ya_3_x = sps_d_P_3_in_base_z*sps_q_in_base_y -
-            sps_d_P_3_in_base_y*sps_q_in_base_z;
-        const real sps_M_ya_3_y = sps_d_P_3_in_base_x*sps_q_in_base_z -
-            sps_d_P_3_in_base_z*sps_q_in_base_x;
-        const real sps_M_ya_3_z = sps_d_P_3_in_base_y*sps_q_in_base_x -
-            sps_d_P_3_in_base_x*sps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + sps_Q_t_10 : sps_Q_t_10;  /* total_sps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + sps_Q_t_11 : sps_Q_t_11;  /* total_sps_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + sps_Q_t_12 : sps_Q_t_12;  /* total_sps_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + sps_Q_t_14 : sps_Q_t_14;  /* total_sps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + sps_Q_t_15 : sps_Q_t_15;  /* total_sps_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + sps_Q_t_17 : sps_Q_t_17;  /* total_sps_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + sps_M_ta_t_3 : sps_M_ta_t_3;  /* total_sps_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + sps_M_ta_t_4 : sps_M_ta_t_4;  /* total_sps_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + sps_M_ta_t_5 : sps_M_ta_t_5;  /* total_sps_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + sps_M_ta_t_6 : sps_M_ta_t_6;  /* total_sps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + sps_M_ta_t_8 : sps_M_ta_t_8;  /* total_sps_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + sps_M_ta_t_9 : sps_M_ta_t_9;  /* total_sps_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + sps_M_ta_t_10 : sps_M_ta_t_10;  /* total_sps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + sps_M_ta_t_11 : sps_M_ta_t_11;  /* total_sps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + sps_M_ta_t_12 : sps_M_ta_t_12;  /* total_sps_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + sps_M_aa_t : sps_M_aa_t;  /* total_sps_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + sps_M_aa_t_2 : sps_M_aa_t_2;  /* total_sps_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + sps_M_aa_t_3 : sps_M_aa_t_3;  /* total_sps_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + sps_M_aa_t_4 : sps_M_aa_t_4;  /* total_sps_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + sps_M_aa_t_5 : sps_M_aa_t_5;  /* total_sps_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + sps_M_aa_t_6 : sps_M_aa_t_6;  /* total_sps_zz_3 */
-        o[0*count + k] = sps_d_P_3_in_base_x;
-        o[1*count + k] = sps_d_P_3_in_base_x;
-        o[2*count + k] = sps_d_P_3_in_base_y;
-        o[3*count + k] = sps_d_P_3_in_base_y;
-        o[4*count + k] = sps_d_P_3_in_base_z;
-        o[5*count + k] = sps_d_P_3_in_base_z;
+        const real sps_M_ya_3_x = sps_d_P_3_z*sps_q_y - sps_d_P_3_y*sps_q_z;
+        const real sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x;
+        const real sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + sps_Q_xx : sps_Q_xx;  /* M_tt_sps_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + sps_Q_xy : sps_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + sps_Q_xz : sps_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + sps_Q_yy : sps_Q_yy;  /* M_tt_sps_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + sps_Q_yz : sps_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + sps_Q_zz : sps_Q_zz;  /* M_tt_sps_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + sps_M_ta_t_3 : sps_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + sps_M_ta_t_4 : sps_M_ta_t_4;  /* M_ta_sps_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + sps_M_ta_t_5 : sps_M_ta_t_5;  /* M_ta_sps_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + sps_M_ta_t_6 : sps_M_ta_t_6;  /* M_ta_sps_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + sps_M_ta_t_8 : sps_M_ta_t_8;  /* M_ta_t */
+        terms[11*count + k] = add ? terms[11*count + k] + sps_M_ta_t_9 : sps_M_ta_t_9;  /* M_ta_sps_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + sps_M_ta_t_10 : sps_M_ta_t_10;  /* M_ta_sps_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + sps_M_ta_t_11 : sps_M_ta_t_11;  /* M_ta_sps_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + sps_M_ta_t_12 : sps_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + sps_M_aa_t : sps_M_aa_t;  /* M_aa_sps_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + sps_M_aa_t_2 : sps_M_aa_t_2;  /* M_aa_sps_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + sps_M_aa_t_3 : sps_M_aa_t_3;  /* M_aa_sps_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + sps_M_aa_t_4 : sps_M_aa_t_4;  /* M_aa_sps_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + sps_M_aa_t_5 : sps_M_aa_t_5;  /* M_aa_sps_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + sps_M_aa_t_6 : sps_M_aa_t_6;  /* M_aa_sps_zz */
+        /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
+           freedom of joint 3 */
+        o[0*count + k] = sps_d_P_3_x;
+        o[1*count + k] = sps_d_P_3_x;
+        o[2*count + k] = sps_d_P_3_y;
+        o[3*count + k] = sps_d_P_3_y;
+        o[4*count + k] = sps_d_P_3_z;
+        o[5*count + k] = sps_d_P_3_z;
+        /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
         o[6*count + k] = sps_M_ya_3_x;
         o[7*count + k] = sps_M_ya_3_x;
         o[8*count + k] = sps_M_ya_3_y;
         o[9*count + k] = sps_M_ya_3_y;
         o[10*count + k] = sps_M_ya_3_z;
         o[11*count + k] = sps_M_ya_3_z;
-        o[12*count + k] = sps_J_group_3_zz;
-        o[14*count + k] = (sps_d_P_3_in_base_x + (sps_d_P_3_in_base_y + sps_d_P_3_in_base_z)) +
-            ((sps_M_ya_3_x + sps_M_ya_3_y) + (sps_M_ya_3_z + sps_J_group_3_zz));
+        /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 3 */
+        o[12*count + k] = sps_J_group_3_in_axes3_zz;
+        o[14*count + k] = (sps_d_P_3_x + (sps_d_P_3_y + sps_d_P_3_z)) + ((sps_M_ya_3_x +
+            sps_M_ya_3_y) + (sps_M_ya_3_z + sps_J_group_3_in_axes3_zz));
         o[13*count + k] = UNLESS(magnitude(sps_rho2_1) >
             TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_rho2_2) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-sps_w_2_t) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(sps_w_1_t) >
             TOLERANCE*R(0.6400000000000001));
     }
 }
@@ -2581,81 +2672,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_sps_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_sps_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_sps_xx;
-        const real total_sps_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_sps_yy;
-        const real total_sps_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_sps_zz;
+        const real M_tt_xx = M_tt_sps_xx + m_star;
+        const real M_tt_sps_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_sps_yy + m_star;
+        const real M_tt_sps_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_sps_zz + m_star;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_sps_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_sps_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_sps_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_sps_xz_2 - h_star_in_base_y;
-        const real total_sps_yx = sums[9*w + k];
-        const real M_ta_yx = total_sps_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_sps_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_sps_yz_2;
-        const real total_sps_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_sps_zx;
-        const real total_sps_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_sps_zy;
+        const real M_ta_sps_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_sps_xy + h_star_z;
+        const real M_ta_sps_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_sps_xz - h_star_y;
+        const real M_ta_sps_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_sps_yx - h_star_z;
+        const real M_ta_sps_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_sps_yz + h_star_x;
+        const real M_ta_sps_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_sps_zx + h_star_y;
+        const real M_ta_sps_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_sps_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_8 = s[15*w + k];
-        const real total_sps_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_8 - total_sps_xx_3;
-        const real J_star_t_9 = s[16*w + k];
-        const real total_sps_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_9 + total_sps_xy_3;
-        const real J_star_t_10 = s[17*w + k];
-        const real total_sps_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_10 - total_sps_xz_3;
-        const real J_star_t_13 = s[18*w + k];
-        const real total_sps_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_13 - total_sps_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_sps_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_sps_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_sps_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_sps_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_sps_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_sps_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_sps_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_sps_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_sps_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_sps_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_sps_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_sps_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_sps_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_sps_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_sps_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_sps_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_sps_xy = sums[1*w + k];
-        M[1*w + k] = -total_sps_xy;
-        M[12*w + k] = -total_sps_xy;
-        const real total_sps_xz = sums[2*w + k];
-        M[2*w + k] = -total_sps_xz;
-        M[24*w + k] = -total_sps_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[12*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[24*w + k] = M_tt_xz;
         M[13*w + k] = M_tt_yy;
-        const real total_sps_yz = sums[4*w + k];
-        M[14*w + k] = -total_sps_yz;
-        M[25*w + k] = -total_sps_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[14*w + k] = M_tt_yz;
+        M[25*w + k] = M_tt_yz;
         M[26*w + k] = M_tt_zz;
-        const real total_sps_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_sps_xx_2;
-        M[36*w + k] = total_sps_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[36*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[48*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[60*w + k] = M_ta_xz;
         M[15*w + k] = M_ta_yx;
         M[37*w + k] = M_ta_yx;
-        const real total_sps_yy_2 = sums[10*w + k];
-        M[16*w + k] = -total_sps_yy_2;
-        M[49*w + k] = -total_sps_yy_2;
+        const real M_ta_t = sums[10*w + k];
+        M[16*w + k] = -M_ta_t;
+        M[49*w + k] = -M_ta_t;
         M[17*w + k] = M_ta_yz;
         M[61*w + k] = M_ta_yz;
         M[27*w + k] = M_ta_zx;
         M[38*w + k] = M_ta_zx;
         M[28*w + k] = M_ta_zy;
         M[50*w + k] = M_ta_zy;
-        const real total_sps_zz_2 = sums[14*w + k];
-        M[29*w + k] = -total_sps_zz_2;
-        M[62*w + k] = -total_sps_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[29*w + k] = M_ta_zz;
+        M[62*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[39*w + k] = M_aa_xx;
         M[40*w + k] = M_aa_xy;
         M[51*w + k] = M_aa_xy;
@@ -2665,10 +2759,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[53*w + k] = M_aa_yz;
         M[64*w + k] = M_aa_yz;
         M[65*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_sps_xy) + (total_sps_xz + (M_tt_yy + total_sps_yz))) +
-            ((M_tt_zz + total_sps_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_sps_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_sps_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_t + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2753,16 +2847,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2773,30 +2870,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2818,9 +2924,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2840,27 +2946,32 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -2878,235 +2989,242 @@ INLINE void Z_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
         /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_v_1_t = sps_c_2*sps_c_3_t;
-        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
-        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
-        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_t = sps_c_3_t*sps_root_2;
-        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
-        const real sps_w_1_t = sps_s_2*sps_s_3;
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
-        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
-        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
-            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
-            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
-            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
-        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
         /* (sps-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
         const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
         const real t_dot_x = s[12*w + j];
         const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
+        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
+        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
+        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
+        const real sps_v_2_t = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
+            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
+        /* (sps-w_4) reciprocal vector 3 */
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
+        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
+        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
+        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
+        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
+        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
+            axis_y_sps_axes3_z*sps_w_4_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
+            axis_y_sps_axes3_x*sps_w_4_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
+            axis_y_sps_axes3_y*sps_w_4_x;
+        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
             axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
-            sps_S_dot_z*sps_axis_z_z;
+        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
+            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
+            sps_S_dot_z*sps_w_4_z;
+        /* (sps-qd_1) rate of joint 1 */
+        const real inv_sps_w_1_t = 1/sps_w_1_t;
+        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
         /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
-            sps_S_dot_rest_tip_y*sps_v_2_t);
-        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 +
-            sps_S_dot_rest_tip_y*sps_v_1_t_3);
+        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_t = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
         /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
-        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
+        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
         const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
-        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
-        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3;
-        const real sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
+        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
+        /* (sps-W_3) centripetal tensor of link 3 */
+        const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
+        const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
+        const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
         /* (sps-u_1) centripetal acceleration of the connection point */
         const real sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
         const real sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
         const real sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        const real sps_u_1_in_axes3_x = axis_x_sps_axes3_x*sps_u_1_x +
+            axis_x_sps_axes3_y*sps_u_1_y + axis_x_sps_axes3_z*sps_u_1_z;
+        const real sps_u_1_in_axes3_y = axis_y_sps_axes3_x*sps_u_1_x +
+            axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
+        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
+        const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
         /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y;
-        const real sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y;
-        /* (sps-W_3) centripetal tensor of link 3 */
-        const real sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x;
-        const real sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y;
-        const real sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z;
-        const real sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y;
-        const real sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z;
-        const real sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z;
+        const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y;
+        const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y;
         /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
-        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz +
-            sps_beta_3_y);
-        const real sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) -
-            sps_bias_t*sps_omega_2_r1_x;
-        /* (sps-u_1) centripetal acceleration of the connection point */
-        const real sps_u_1_tip_x = axis_x_sps_axes3_x*sps_u_1_x + axis_x_sps_axes3_y*sps_u_1_y +
-            axis_x_sps_axes3_z*sps_u_1_z;
-        const real sps_u_1_tip_y = axis_y_sps_axes3_in_base_x*sps_u_1_x +
-            axis_y_sps_axes3_in_base_y*sps_u_1_y + axis_y_sps_axes3_in_base_z*sps_u_1_z;
+        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
+        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
+            sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
+        const real sps_bias_in_axes3_y = sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x)
+            - sps_bias_t*sps_omega_2_in_axes3_x;
         /* (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real sps_rel_o_x = sps_u_1_tip_x - sps_bias_x;
-        const real sps_rel_o_y = sps_u_1_tip_y - sps_bias_y;
+        const real sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - sps_bias_in_axes3_x;
+        const real sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - sps_bias_in_axes3_y;
+        /* (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real sps_qdd_1_o = inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t +
+            sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x);
         /* (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real sps_qdd_1_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_2_t_2 -
-            sps_rel_o_y*sps_v_2_t);
-        const real sps_qdd_2_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_1_t_4 +
-            sps_rel_o_y*sps_v_1_t_3);
+        const real sps_qdd_2_o = -inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real sps_alpha_2_o_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1_o*sps_s_2;
-        const real sps_alpha_2_o_y = sps_zeta_2_y - sps_c_2*sps_qdd_1_o;
+        const real sps_alpha_2_o_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1_o*sps_s_2;
+        const real sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1_o;
         /* (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real sps_alpha_3_o_x = sps_zeta_3_x - sps_alpha_2_o_y*sps_c_3_t -
-            sps_qdd_2_o*sps_s_3;
-        const real sps_alpha_3_o_y = sps_c_3_t*sps_qdd_2_o - sps_zeta_3_y -
-            sps_alpha_2_o_y*sps_s_3;
+        const real sps_alpha_3_o_in_axes3_x = sps_zeta_3_in_axes3_x +
+            sps_alpha_2_o_in_axes2_y*sps_c_3 + sps_qdd_2_o*sps_s_3;
+        const real sps_alpha_3_o_in_axes3_y = sps_zeta_3_in_axes3_y + sps_c_3*sps_qdd_2_o -
+            sps_alpha_2_o_in_axes2_y*sps_s_3;
         /* (sps-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real sps_B_3_o_xy = sps_W_3_xy - sps_alpha_2_o_x;
-        const real sps_B_3_o_xz = sps_W_3_xz + sps_alpha_3_o_y;
-        const real sps_B_3_o_yx = sps_W_3_xy + sps_alpha_2_o_x;
-        const real sps_B_3_o_yz = sps_W_3_yz - sps_alpha_3_o_x;
-        const real sps_B_3_o_zx = sps_W_3_xz - sps_alpha_3_o_y;
-        const real sps_B_3_o_zy = sps_W_3_yz + sps_alpha_3_o_x;
-        /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-           about its reference point */
-        const real sps_h_4_x = m->sps_h_4_x[i];
-        const real sps_h_4_y = m->sps_h_4_y[i];
-        const real sps_h_4_z = m->sps_h_4_z[i];
-        const real sps_phi_4_o_z = sps_B_3_o_zx*sps_h_4_y + sps_B_3_o_zy*sps_h_4_z -
-            sps_h_4_x*(sps_W_3_t + sps_W_3_t_2);
-        /* (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
+        const real sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_x;
+        const real sps_B_3_o_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y;
+        const real sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_x;
+        const real sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x;
+        const real sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y;
+        const real sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x;
+        /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
+           link 4, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real sps_g_tip_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y +
-            axis_x_sps_axes3_z*gravity_z;
-        const real sps_g_tip_y = axis_y_sps_axes3_in_base_x*gravity_x +
-            axis_y_sps_axes3_in_base_y*gravity_y + axis_y_sps_axes3_in_base_z*gravity_z;
-        const real sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y +
-            gravity_z*sps_axis_z_z;
-        /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
-        const real sps_acc_4_o_x = sps_u_1_tip_x - sps_g_tip_x;
-        const real sps_acc_4_o_y = sps_u_1_tip_y - sps_g_tip_y;
-        const real sps_acc_4_o_z = sps_axis_z_x*sps_u_1_x + sps_axis_z_y*sps_u_1_y +
-            sps_axis_z_z*sps_u_1_z - sps_g_tip_z;
+        const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
+            + axis_x_sps_axes3_z*gravity_z;
+        const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
+            + axis_y_sps_axes3_z*gravity_z;
+        const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
+            gravity_z*sps_w_4_z;
+        const real sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - sps_g_in_axes3_x;
+        const real sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - sps_g_in_axes3_y;
+        const real sps_acc_4_o_in_axes3_z = sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y +
+            sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z;
+        /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+           about its reference point */
+        const real sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
+        const real sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
+        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
+        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
+        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
+        const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y +
+            sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_o_t +
+            sps_phi_4_o_t_2);
         /* (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
-        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
-        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
-        const real sps_Sigma_3_yy = m->sps_Sigma_3_yy[i];
-        const real sps_Sigma_3_zz = m->sps_Sigma_3_zz[i];
-        const real sps_h_3_x = m->sps_h_3_x[i];
-        const real sps_h_3_z = m->sps_h_3_z[i];
-        const real sps_mu_3_o_x = sps_B_3_o_yx*sps_J_group_3_xz + sps_B_3_o_zy*sps_Sigma_3_yy +
-            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_o_z*sps_h_4_z +
-            sps_g_tip_y*sps_h_3_x - sps_B_3_o_yz*sps_Sigma_3_zz - sps_B_3_o_zx*sps_J_group_3_xy -
-            sps_acc_4_o_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z;
-        const real sps_Sigma_3_xx = m->sps_Sigma_3_xx[i];
-        const real sps_h_3_y = m->sps_h_3_y[i];
-        const real sps_mu_3_o_y = sps_B_3_o_xz*sps_Sigma_3_zz + sps_B_3_o_zy*sps_J_group_3_xy +
-            sps_acc_4_o_x*sps_h_4_x + sps_g_tip_z*sps_h_3_y - sps_B_3_o_xy*sps_J_group_3_yz -
-            sps_B_3_o_zx*sps_Sigma_3_xx - sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) -
-            sps_acc_4_o_z*sps_h_4_y - sps_g_tip_x*sps_h_3_x;
-        const real sps_mu_3_o_z = sps_B_3_o_xz*sps_J_group_3_yz + sps_B_3_o_yx*sps_Sigma_3_xx +
-            sps_J_group_3_xy*(sps_W_3_t - sps_W_3_t_2) + sps_acc_4_o_y*sps_h_4_y +
-            sps_g_tip_x*sps_h_3_z - sps_B_3_o_xy*sps_Sigma_3_yy - sps_B_3_o_yz*sps_J_group_3_xz -
-            sps_acc_4_o_x*sps_h_4_z - sps_g_tip_y*sps_h_3_y;
-        const real sps_mu_3_o_r0_y = sps_mu_3_o_x*sps_s_3 - sps_c_3_t*sps_mu_3_o_y;
+        const real sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
+        const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
+        const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
+        const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
+        const real sps_Sigma_3_in_axes3_yy = m->sps_Sigma_3_in_axes3_yy[i];
+        const real sps_Sigma_3_in_axes3_zz = m->sps_Sigma_3_in_axes3_zz[i];
+        const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
+        const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
+        const real sps_mu_3_o_in_axes3_x = sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
+            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + sps_g_in_axes3_y*sps_h_3_in_spec3_x -
+            sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z;
+        const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
+        const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
+        const real sps_mu_3_o_in_axes3_y = sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
+            sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
+            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - sps_g_in_axes3_x*sps_h_3_in_spec3_x;
+        const real sps_mu_3_o_in_axes3_z = sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
+            sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
+            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + sps_g_in_axes3_x*sps_h_3_in_spec3_z -
+            sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+            sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y;
+        const real sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_y +
+            sps_mu_3_o_in_axes3_x*sps_s_3;
         /* (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real sps_Gamma_1_o = sps_mu_3_o_x*sps_v_1_t + sps_mu_3_o_y*sps_v_1_t_2 +
-            sps_mu_3_o_z*sps_s_2;
+        const real sps_Gamma_1_o = sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_z*sps_s_2;
         /* (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real sps_c_o_x = sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) -
-            inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t_2 - sps_mu_3_o_r0_y*sps_v_1_t_4) -
-            sps_B_3_o_xy*sps_h_4_z - sps_B_3_o_xz*sps_h_4_x;
-        const real sps_c_o_y = inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t +
-            sps_mu_3_o_r0_y*sps_v_1_t_3) + sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) -
-            sps_B_3_o_yx*sps_h_4_y - sps_B_3_o_yz*sps_h_4_x;
+        const real sps_c_o_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
+            inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
+            sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x;
+        const real sps_c_o_in_axes3_y = inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1_o*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t + sps_phi_4_o_t)
+            - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x;
         /* (sps-U) velocity and gravity terms of the leg force */
-        const real sps_U_in_base_x = sps_axis_z_x*sps_phi_4_o_z - axis_x_sps_axes3_x*sps_c_o_x -
-            axis_y_sps_axes3_in_base_x*sps_c_o_y;
-        const real sps_U_in_base_y = sps_axis_z_y*sps_phi_4_o_z - axis_x_sps_axes3_y*sps_c_o_x -
-            axis_y_sps_axes3_in_base_y*sps_c_o_y;
-        const real sps_U_in_base_z = sps_axis_z_z*sps_phi_4_o_z - axis_x_sps_axes3_z*sps_c_o_x -
-            axis_y_sps_axes3_in_base_z*sps_c_o_y;
+        const real sps_U_x = sps_phi_4_o_in_axes3_z*sps_w_4_x -
+            axis_x_sps_axes3_x*sps_c_o_in_axes3_x - axis_y_sps_axes3_x*sps_c_o_in_axes3_y;
+        const real sps_U_y = sps_phi_4_o_in_axes3_z*sps_w_4_y -
+            axis_x_sps_axes3_y*sps_c_o_in_axes3_x - axis_y_sps_axes3_y*sps_c_o_in_axes3_y;
+        const real sps_U_z = sps_phi_4_o_in_axes3_z*sps_w_4_z -
+            axis_x_sps_axes3_z*sps_c_o_in_axes3_x - axis_y_sps_axes3_z*sps_c_o_in_axes3_y;
         /* (Z_a) rotational part of Z */
-        const real sps_Z_a_t = sps_U_in_base_z*sps_q_in_base_y - sps_U_in_base_y*sps_q_in_base_z;
-        const real sps_Z_a_t_2 = sps_U_in_base_x*sps_q_in_base_z -
-            sps_U_in_base_z*sps_q_in_base_x;
-        const real sps_Z_a_t_3 = sps_U_in_base_y*sps_q_in_base_x -
-            sps_U_in_base_x*sps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + sps_U_in_base_x : sps_U_in_base_x;  /* total_sps_x */
-        terms[1*count + k] = add ? terms[1*count + k] + sps_U_in_base_y : sps_U_in_base_y;  /* total_sps_y */
-        terms[2*count + k] = add ? terms[2*count + k] + sps_U_in_base_z : sps_U_in_base_z;  /* total_sps_z */
-        terms[3*count + k] = add ? terms[3*count + k] + sps_Z_a_t : sps_Z_a_t;  /* total_sps_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + sps_Z_a_t_2 : sps_Z_a_t_2;  /* total_sps_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + sps_Z_a_t_3 : sps_Z_a_t_3;  /* total_sps_z_2 */
-        o[0*count + k] = sps_mu_3_o_z;
-        o[2*count + k] = sps_mu_3_o_z;
+        const real sps_Z_a_t = sps_U_z*sps_q_y - sps_U_y*sps_q_z;
+        const real sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x;
+        const real sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + sps_U_x : sps_U_x;  /* Z_t_sps_x */
+        terms[1*count + k] = add ? terms[1*count + k] + sps_U_y : sps_U_y;  /* Z_t_sps_y */
+        terms[2*count + k] = add ? terms[2*count + k] + sps_U_z : sps_U_z;  /* Z_t_sps_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + sps_Z_a_t : sps_Z_a_t;  /* Z_a_sps_x */
+        terms[4*count + k] = add ? terms[4*count + k] + sps_Z_a_t_2 : sps_Z_a_t_2;  /* Z_a_sps_y */
+        terms[5*count + k] = add ? terms[5*count + k] + sps_Z_a_t_3 : sps_Z_a_t_3;  /* Z_a_sps_z */
+        /* (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the
+           extra freedom of joint 3 */
+        o[0*count + k] = sps_mu_3_o_in_axes3_z;
+        o[2*count + k] = sps_mu_3_o_in_axes3_z;
         o[1*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
+            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -3125,27 +3243,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_sps_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_sps_x;
+        const real Z_t_sps_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_sps_x;
         const real Z_p_y = s[19*w + k];
-        const real total_sps_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_sps_y;
+        const real Z_t_sps_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_sps_y;
         const real Z_p_z = s[20*w + k];
-        const real total_sps_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_sps_z;
+        const real Z_t_sps_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_sps_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_sps_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_sps_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_sps_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_sps_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_sps_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_sps_z_2;
+        const real Z_a_sps_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_sps_x + Z_q_x;
+        const real Z_a_sps_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_sps_y + Z_q_y;
+        const real Z_a_sps_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_sps_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -3246,27 +3366,27 @@ INLINE void H_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -3285,31 +3405,32 @@ INLINE void H_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+        /* (sps-w_4) reciprocal vector 3 */
         const real inv_sps_root_2 = 1/sps_root_2;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        const real sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z;
-        const real sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x;
-        const real sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y;
-        o[0*count + k] = sps_axis_z_x;
-        o[1*count + k] = sps_axis_z_y;
-        o[2*count + k] = sps_axis_z_z;
+        const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
+        const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
+        const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
+        /* (sps-w_4) reciprocal vector 3 */
+        o[0*count + k] = sps_w_4_x;
+        o[1*count + k] = sps_w_4_y;
+        o[2*count + k] = sps_w_4_z;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
         o[3*count + k] = sps_H_a_4_x;
         o[4*count + k] = sps_H_a_4_y;
         o[5*count + k] = sps_H_a_4_z;
-        o[7*count + k] = (sps_axis_z_x + (sps_axis_z_y + sps_axis_z_z)) + (sps_H_a_4_x +
-            (sps_H_a_4_y + sps_H_a_4_z));
+        o[7*count + k] = (sps_w_4_x + (sps_w_4_y + sps_w_4_z)) + (sps_H_a_4_x + (sps_H_a_4_y +
+            sps_H_a_4_z));
         o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
@@ -3417,33 +3538,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3451,31 +3559,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3503,9 +3637,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3527,27 +3661,32 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -3565,244 +3704,256 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
         /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_v_1_t = sps_c_2*sps_c_3_t;
-        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
-        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
-        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_t = sps_c_3_t*sps_root_2;
-        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
-        const real sps_w_1_t = sps_s_2*sps_s_3;
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
-        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
-        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
-            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
-            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
-            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
-        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
         /* (sps-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
         const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
         const real t_dot_x = s[12*w + j];
         const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
+        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
+        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
+        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
+        const real sps_v_2_t = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
+            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
+        /* (sps-w_4) reciprocal vector 3 */
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
+        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
+        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
+        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
+        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
+        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
+            axis_y_sps_axes3_z*sps_w_4_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
+            axis_y_sps_axes3_x*sps_w_4_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
+            axis_y_sps_axes3_y*sps_w_4_x;
+        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
             axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
-            sps_S_dot_z*sps_axis_z_z;
+        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
+            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
+            sps_S_dot_z*sps_w_4_z;
+        /* (sps-qd_1) rate of joint 1 */
+        const real inv_sps_w_1_t = 1/sps_w_1_t;
+        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
         /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
-            sps_S_dot_rest_tip_y*sps_v_2_t);
-        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 +
-            sps_S_dot_rest_tip_y*sps_v_1_t_3);
+        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_t = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
         /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
-        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
+        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
         const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
-        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
-        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3;
-        const real sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
-        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y;
-        const real sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y;
+        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
         /* (sps-W_3) centripetal tensor of link 3 */
-        const real sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x;
-        const real sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y;
-        const real sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z;
-        const real sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y;
-        const real sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z;
-        const real sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z;
-        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
-        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz +
-            sps_beta_3_y);
-        const real sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) -
-            sps_bias_t*sps_omega_2_r1_x;
-        /* (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real sps_g_tip_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y +
-            axis_x_sps_axes3_z*gravity_z;
-        const real sps_g_tip_y = axis_y_sps_axes3_in_base_x*gravity_x +
-            axis_y_sps_axes3_in_base_y*gravity_y + axis_y_sps_axes3_in_base_z*gravity_z;
-        const real sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y +
-            gravity_z*sps_axis_z_z;
-        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        const real sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z;
-        const real sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x;
-        const real sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y;
+        const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
+        const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
+        const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
         /* (sps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y;
+        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z;
+        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x;
+        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x;
         /* (sps-S_ddot) acceleration of the connection point */
         const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
         const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
         const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
-        const real sps_S_ddot_tip_x = axis_x_sps_axes3_x*sps_S_ddot_x +
+        const real sps_S_ddot_in_axes3_x = axis_x_sps_axes3_x*sps_S_ddot_x +
             axis_x_sps_axes3_y*sps_S_ddot_y + axis_x_sps_axes3_z*sps_S_ddot_z;
-        const real sps_S_ddot_tip_y = axis_y_sps_axes3_in_base_x*sps_S_ddot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_ddot_y + axis_y_sps_axes3_in_base_z*sps_S_ddot_z;
+        const real sps_S_ddot_in_axes3_y = axis_y_sps_axes3_x*sps_S_ddot_x +
+            axis_y_sps_axes3_y*sps_S_ddot_y + axis_y_sps_axes3_z*sps_S_ddot_z;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
+        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
+        const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
+        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y;
+        const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y;
+        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
+        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
+            sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
+        const real sps_bias_in_axes3_y = sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x)
+            - sps_bias_t*sps_omega_2_in_axes3_x;
         /* (sps-rel) acceleration of the connection point left to the joint accelerations */
-        const real sps_rel_x = sps_S_ddot_tip_x - sps_bias_x;
-        const real sps_rel_y = sps_S_ddot_tip_y - sps_bias_y;
+        const real sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - sps_bias_in_axes3_x;
+        const real sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - sps_bias_in_axes3_y;
         /* (sps-qdd_1) acceleration of joint 1 */
-        const real sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t);
-        const real sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_4 + sps_rel_y*sps_v_1_t_3);
-        /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
-        const real sps_acc_4_x = sps_S_ddot_tip_x - sps_g_tip_x;
-        const real sps_acc_4_y = sps_S_ddot_tip_y - sps_g_tip_y;
-        const real sps_acc_4_z = sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y +
-            sps_S_ddot_z*sps_axis_z_z - sps_g_tip_z;
+        const real sps_qdd_1 = inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t +
+            sps_rel_in_axes3_y*sps_v_2_in_axes3_x);
+        /* (sps-qdd_2) acceleration of joint 2 */
+        const real sps_qdd_2_t = inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-alpha_2) angular acceleration of link 2 */
-        const real sps_alpha_2_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1*sps_s_2;
-        const real sps_alpha_2_y = sps_zeta_2_y - sps_c_2*sps_qdd_1;
+        const real sps_alpha_2_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1*sps_s_2;
+        const real sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1;
         /* (sps-alpha_3) angular acceleration of link 3 */
-        const real sps_alpha_3_x = sps_zeta_3_x - sps_alpha_2_y*sps_c_3_t - sps_qdd_2*sps_s_3;
-        const real sps_alpha_3_y = sps_c_3_t*sps_qdd_2 - sps_zeta_3_y - sps_alpha_2_y*sps_s_3;
+        const real sps_alpha_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_y*sps_c_3
+            - sps_qdd_2_t*sps_s_3;
+        const real sps_alpha_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3
+            - sps_c_3*sps_qdd_2_t;
         const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
-        const real sps_alpha_3_z = sps_alpha_2_x + sps_ydd_3;
+        const real sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3;
         /* (sps-B_3) acceleration tensor of link 3 */
-        const real sps_B_3_xy = sps_W_3_xy - sps_alpha_3_z;
-        const real sps_B_3_xz = sps_W_3_xz + sps_alpha_3_y;
-        const real sps_B_3_yx = sps_W_3_xy + sps_alpha_3_z;
-        const real sps_B_3_yz = sps_W_3_yz - sps_alpha_3_x;
-        const real sps_B_3_zx = sps_W_3_xz - sps_alpha_3_y;
-        const real sps_B_3_zy = sps_W_3_yz + sps_alpha_3_x;
+        const real sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z;
+        const real sps_B_3_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y;
+        const real sps_B_3_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_3_in_axes3_z;
+        const real sps_B_3_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x;
+        const real sps_B_3_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y;
+        const real sps_B_3_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x;
+        /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
+            + axis_x_sps_axes3_z*gravity_z;
+        const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
+            + axis_y_sps_axes3_z*gravity_z;
+        const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
+            gravity_z*sps_w_4_z;
+        const real sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - sps_g_in_axes3_x;
+        const real sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - sps_g_in_axes3_y;
+        const real sps_acc_4_in_axes3_z = sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y +
+            sps_S_ddot_z*sps_w_4_z - sps_g_in_axes3_z;
         /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
-        const real sps_h_4_x = m->sps_h_4_x[i];
-        const real sps_h_4_y = m->sps_h_4_y[i];
-        const real sps_h_4_z = m->sps_h_4_z[i];
-        const real sps_phi_4_z = sps_B_3_zx*sps_h_4_y + sps_B_3_zy*sps_h_4_z -
-            sps_h_4_x*(sps_W_3_t + sps_W_3_t_2);
+        const real sps_phi_4_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
+        const real sps_phi_4_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
+        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
+        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
+        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
+        const real sps_phi_4_in_axes3_z = sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y +
+            sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_t +
+            sps_phi_4_t_2);
         /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
-        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
-        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
-        const real sps_Sigma_3_yy = m->sps_Sigma_3_yy[i];
-        const real sps_Sigma_3_zz = m->sps_Sigma_3_zz[i];
-        const real sps_h_3_x = m->sps_h_3_x[i];
-        const real sps_h_3_z = m->sps_h_3_z[i];
-        const real sps_mu_3_x = sps_B_3_yx*sps_J_group_3_xz + sps_B_3_zy*sps_Sigma_3_yy +
-            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_z*sps_h_4_z +
-            sps_g_tip_y*sps_h_3_x - sps_B_3_yz*sps_Sigma_3_zz - sps_B_3_zx*sps_J_group_3_xy -
-            sps_acc_4_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z;
-        const real sps_Sigma_3_xx = m->sps_Sigma_3_xx[i];
-        const real sps_h_3_y = m->sps_h_3_y[i];
-        const real sps_mu_3_y = sps_B_3_xz*sps_Sigma_3_zz + sps_B_3_zy*sps_J_group_3_xy +
-            sps_acc_4_x*sps_h_4_x + sps_g_tip_z*sps_h_3_y - sps_B_3_xy*sps_J_group_3_yz -
-            sps_B_3_zx*sps_Sigma_3_xx - sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) -
-            sps_acc_4_z*sps_h_4_y - sps_g_tip_x*sps_h_3_x;
-        const real sps_mu_3_z = sps_B_3_xz*sps_J_group_3_yz + sps_B_3_yx*sps_Sigma_3_xx +
-            sps_J_group_3_xy*(sps_W_3_t - sps_W_3_t_2) + sps_acc_4_y*sps_h_4_y +
-            sps_g_tip_x*sps_h_3_z - sps_B_3_xy*sps_Sigma_3_yy - sps_B_3_yz*sps_J_group_3_xz -
-            sps_acc_4_x*sps_h_4_z - sps_g_tip_y*sps_h_3_y;
-        const real sps_mu_3_r0_y = sps_mu_3_x*sps_s_3 - sps_c_3_t*sps_mu_3_y;
+        const real sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
+        const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
+        const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
+        const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
+        const real sps_Sigma_3_in_axes3_yy = m->sps_Sigma_3_in_axes3_yy[i];
+        const real sps_Sigma_3_in_axes3_zz = m->sps_Sigma_3_in_axes3_zz[i];
+        const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
+        const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
+        const real sps_mu_3_in_axes3_x = sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_J_group_3_in_axes3_yz*(sps_phi_4_t_2
+            - sps_mu_3_t) + sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z +
+            sps_g_in_axes3_y*sps_h_3_in_spec3_x - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z;
+        const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
+        const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
+        const real sps_mu_3_in_axes3_y = sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_phi_4_t -
+            sps_mu_3_t) - sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
+            sps_g_in_axes3_x*sps_h_3_in_spec3_x;
+        const real sps_mu_3_in_axes3_z = sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_phi_4_t -
+            sps_phi_4_t_2) + sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
+            sps_g_in_axes3_x*sps_h_3_in_spec3_z - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+            sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y;
+        const real sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_y +
+            sps_mu_3_in_axes3_x*sps_s_3;
         /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
-        const real sps_Gamma_1 = sps_mu_3_x*sps_v_1_t + sps_mu_3_y*sps_v_1_t_2 +
-            sps_mu_3_z*sps_s_2;
+        const real sps_Gamma_1 = sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y + sps_mu_3_in_axes3_z*sps_s_2;
         /* (sps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real sps_c_x = sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) -
-            inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t_2 - sps_mu_3_r0_y*sps_v_1_t_4) -
-            sps_B_3_xy*sps_h_4_z - sps_B_3_xz*sps_h_4_x;
-        const real sps_c_y = inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t + sps_mu_3_r0_y*sps_v_1_t_3) +
-            sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) - sps_B_3_yx*sps_h_4_y - sps_B_3_yz*sps_h_4_x;
-        const real sps_c_in_base_x = axis_x_sps_axes3_x*sps_c_x +
-            axis_y_sps_axes3_in_base_x*sps_c_y - sps_axis_z_x*sps_phi_4_z;
-        const real sps_c_in_base_y = axis_x_sps_axes3_y*sps_c_x +
-            axis_y_sps_axes3_in_base_y*sps_c_y - sps_axis_z_y*sps_phi_4_z;
-        const real sps_c_in_base_z = axis_x_sps_axes3_z*sps_c_x +
-            axis_y_sps_axes3_in_base_z*sps_c_y - sps_axis_z_z*sps_phi_4_z;
+        const real sps_c_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_t + sps_phi_4_t_2) -
+            inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t + sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) -
+            sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x;
+        const real sps_c_in_axes3_y = inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_t + sps_phi_4_t) -
+            sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x;
+        const real sps_c_x = axis_x_sps_axes3_x*sps_c_in_axes3_x +
+            axis_y_sps_axes3_x*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*sps_w_4_x;
+        const real sps_c_y = axis_x_sps_axes3_y*sps_c_in_axes3_x +
+            axis_y_sps_axes3_y*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*sps_w_4_y;
+        const real sps_c_z = axis_x_sps_axes3_z*sps_c_in_axes3_x +
+            axis_y_sps_axes3_z*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*sps_w_4_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real sps_R_a_t = sps_c_in_base_z*sps_q_in_base_y - sps_c_in_base_y*sps_q_in_base_z;
-        const real sps_R_a_t_2 = sps_c_in_base_x*sps_q_in_base_z -
-            sps_c_in_base_z*sps_q_in_base_x;
-        const real sps_R_a_t_3 = sps_c_in_base_y*sps_q_in_base_x -
-            sps_c_in_base_x*sps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + sps_c_in_base_x : sps_c_in_base_x;  /* total_sps_x */
-        terms[1*count + k] = add ? terms[1*count + k] + sps_c_in_base_y : sps_c_in_base_y;  /* total_sps_y */
-        terms[2*count + k] = add ? terms[2*count + k] + sps_c_in_base_z : sps_c_in_base_z;  /* total_sps_z */
-        terms[3*count + k] = add ? terms[3*count + k] + sps_R_a_t : sps_R_a_t;  /* total_sps_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + sps_R_a_t_2 : sps_R_a_t_2;  /* total_sps_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + sps_R_a_t_3 : sps_R_a_t_3;  /* total_sps_z_2 */
-        o[0*count + k] = sps_mu_3_z;
-        o[1*count + k] = sps_axis_z_x;
-        o[2*count + k] = sps_axis_z_y;
-        o[3*count + k] = sps_axis_z_z;
+        const real sps_R_a_t = sps_c_y*sps_q_z - sps_c_z*sps_q_y;
+        const real sps_R_a_t_2 = sps_c_z*sps_q_x - sps_c_x*sps_q_z;
+        const real sps_R_a_t_3 = sps_c_x*sps_q_y - sps_c_y*sps_q_x;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+        const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
+        const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
+        const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + sps_c_x : sps_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + sps_c_y : sps_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + sps_c_z : sps_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + sps_R_a_t : sps_R_a_t;  /* R_a_sps_x */
+        terms[4*count + k] = add ? terms[4*count + k] + sps_R_a_t_2 : sps_R_a_t_2;  /* R_a_sps_y */
+        terms[5*count + k] = add ? terms[5*count + k] + sps_R_a_t_3 : sps_R_a_t_3;  /* R_a_sps_z */
+        /* (sps-P_3) inertia and weight of the leg along the extra freedom of joint 3 */
+        o[0*count + k] = sps_mu_3_in_axes3_z;
+        /* (sps-w_4) reciprocal vector 3 */
+        o[1*count + k] = sps_w_4_x;
+        o[2*count + k] = sps_w_4_y;
+        o[3*count + k] = sps_w_4_z;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
         o[4*count + k] = sps_H_a_4_x;
         o[5*count + k] = sps_H_a_4_y;
         o[6*count + k] = sps_H_a_4_z;
         o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
+            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -3825,28 +3976,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_sps_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_sps_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_sps_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_sps_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_sps_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_sps_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_sps_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_sps_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_sps_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_sps_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_sps_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_sps_z_2;
+        const real R_a_sps_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_sps_x + mu_p_x;
+        const real R_a_sps_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_sps_y + mu_p_y;
+        const real R_a_sps_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_sps_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -3986,29 +4139,32 @@ INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t leg,
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-q_1) displacement of joint 1 */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_q_1 = angle(inv_sps_root_1*sps_py_1, inv_sps_root_1*sps_px_1);
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        /* (sps-q_1) displacement of joint 1 */
-        const real sps_q_1 = angle(inv_sps_root_1*sps_py_1, inv_sps_root_1*sps_px_1);
         /* (sps-q_2) displacement of joint 2 */
-        const real sps_q_2 = angle(-inv_sps_root_2*sps_xi_1_t, inv_sps_root_2*sps_root_1);
+        const real inv_sps_root_2 = 1/sps_root_2;
+        const real sps_q_2 = angle(-inv_sps_root_2*sps_xi_1_in_axes1_z,
+            inv_sps_root_2*sps_root_1);
+        /* (sps-q_1) displacement of joint 1 */
         o[0*count + k] = sps_q_1;
+        /* (sps-q_2) displacement of joint 2 */
         o[1*count + k] = sps_q_2;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
         o[2*count + k] = sps_y_3_extra;
+        /* (sps-q_4) displacement of joint 4 */
         o[3*count + k] = sps_root_2;
         o[5*count + k] = (sps_q_1 + sps_q_2) + (sps_y_3_extra + sps_root_2);
         o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
@@ -4137,27 +4293,32 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t leg, size_t
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -4175,89 +4336,87 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t leg, size_t
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2 = inv_sps_root_2*sps_root_1;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_v_1_t = sps_c_2*sps_s_3;
-        const real sps_v_1_t_2 = sps_root_2*sps_v_1_t;
-        const real sps_v_1_t_3 = sps_c_2*sps_c_3_t*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_t = sps_c_3_t*sps_root_2;
-        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
-        const real sps_w_1_t = inv_sps_root_2*sps_s_3*sps_xi_1_t;
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
-        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
-        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t;
-        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t;
-        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_t = sps_v_1_t_2*sps_v_2_t_2 + sps_v_1_t_3*sps_v_2_t;
-        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
         /* (sps-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real sps_S_dot_x = t_dot_x + omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real sps_S_dot_x = t_dot_x + omega_y*sps_q_z - omega_z*sps_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real sps_S_dot_y = t_dot_y + omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
+        const real sps_S_dot_y = t_dot_y + omega_z*sps_q_x - omega_x*sps_q_z;
         const real t_dot_z = s[14*w + j];
-        const real sps_S_dot_z = t_dot_z + omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real sps_S_dot_z = t_dot_z + omega_x*sps_q_y - omega_y*sps_q_x;
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
+        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
+        const real sps_v_1_in_axes3_y = sps_c_2_t*sps_c_3*sps_root_2;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
+        const real sps_v_2_t = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
+            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
+        /* (sps-w_4) reciprocal vector 3 */
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_tip_x = sps_S_dot_x*(axis_y_sps_axes3_in_base_y*sps_axis_z_z -
-            axis_y_sps_axes3_in_base_z*sps_axis_z_y) +
-            sps_S_dot_y*(axis_y_sps_axes3_in_base_z*sps_axis_z_x -
-            axis_y_sps_axes3_in_base_x*sps_axis_z_z) +
-            sps_S_dot_z*(axis_y_sps_axes3_in_base_x*sps_axis_z_y -
-            axis_y_sps_axes3_in_base_y*sps_axis_z_x);
-        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
-            sps_S_dot_z*sps_axis_z_z;
+        const real sps_S_dot_rest_t = inv_sps_root_2*sps_s_3*sps_xi_1_in_axes1_z;
+        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
+        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
+        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
+        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
+        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
+        const real sps_S_dot_rest_in_axes3_x = sps_S_dot_x*(axis_y_sps_axes3_y*sps_w_4_z -
+            axis_y_sps_axes3_z*sps_w_4_y) + sps_S_dot_y*(axis_y_sps_axes3_z*sps_w_4_x -
+            axis_y_sps_axes3_x*sps_w_4_z) + sps_S_dot_z*(axis_y_sps_axes3_x*sps_w_4_y -
+            axis_y_sps_axes3_y*sps_w_4_x);
+        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
+            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
+            sps_S_dot_z*sps_w_4_z;
+        /* (sps-qd_1) rate of joint 1 */
+        const real inv_sps_w_1_t = 1/sps_w_1_t;
+        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
         /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
-            sps_S_dot_rest_tip_y*sps_v_2_t);
-        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_3 +
-            sps_S_dot_rest_tip_y*sps_v_1_t_2);
+        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
+        /* (sps-qd_1) rate of joint 1 */
         o[0*count + k] = sps_qd_1;
-        o[1*count + k] = -sps_qd_2;
+        /* (sps-qd_2) rate of joint 2 */
+        o[1*count + k] = -sps_qd_2_t;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
         o[2*count + k] = sps_yd_3;
-        o[3*count + k] = sps_S_dot_rest_tip_z;
-        o[5*count + k] = (sps_qd_1 + sps_qd_2) + (sps_yd_3 + sps_S_dot_rest_tip_z);
+        /* (sps-qd_4) rate of joint 4 */
+        o[3*count + k] = sps_S_dot_rest_in_axes3_z;
+        o[5*count + k] = (sps_qd_1 + sps_qd_2_t) + (sps_yd_3 + sps_S_dot_rest_in_axes3_z);
         o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
+            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -4405,27 +4564,32 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t leg
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -4443,142 +4607,148 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t leg
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
         /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_v_1_t = sps_c_2*sps_s_3;
-        const real sps_v_1_t_2 = sps_root_2*sps_v_1_t;
-        const real sps_v_1_t_3 = sps_c_2*sps_c_3_t*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_t = sps_c_3_t*sps_root_2;
-        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
-        const real sps_w_1_t = sps_s_2*sps_s_3;
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
-        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
-        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t;
-        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t;
-        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
-            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
-            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
-            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_t = sps_v_1_t_2*sps_v_2_t_2 + sps_v_1_t_3*sps_v_2_t;
-        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
         /* (sps-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
         const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
         const real t_dot_x = s[12*w + j];
         const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
+        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
+        const real sps_v_1_in_axes3_y = sps_c_2_t*sps_c_3*sps_root_2;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
+        const real sps_v_2_t = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
+            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
+        /* (sps-w_4) reciprocal vector 3 */
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
+        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
+        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
+        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
+        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
+        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
+            axis_y_sps_axes3_z*sps_w_4_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
+            axis_y_sps_axes3_x*sps_w_4_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
+            axis_y_sps_axes3_y*sps_w_4_x;
+        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
             axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
-            sps_S_dot_z*sps_axis_z_z;
+        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
+            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
+            sps_S_dot_z*sps_w_4_z;
+        /* (sps-qd_1) rate of joint 1 */
+        const real inv_sps_w_1_t = 1/sps_w_1_t;
+        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
         /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
-            sps_S_dot_rest_tip_y*sps_v_2_t);
-        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_3 +
-            sps_S_dot_rest_tip_y*sps_v_1_t_2);
+        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_t = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
         /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
-        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
+        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
         const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
-        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
-        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_x = sps_omega_2_r1_y*sps_yd_3 - sps_c_3_t*sps_zeta_2_y;
-        const real sps_beta_3_y = -sps_omega_2_r1_x*sps_yd_3 - sps_s_3*sps_zeta_2_y;
-        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
-        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_beta_3_y +
-            sps_omega_2_r1_x*sps_omega_3_z);
-        const real sps_bias_y = sps_root_2*(sps_omega_2_r1_y*sps_omega_3_z - sps_beta_3_x) -
-            sps_bias_t*sps_omega_2_r1_x;
+        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
         /* (sps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y;
+        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z;
+        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x;
+        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x;
         /* (sps-S_ddot) acceleration of the connection point */
         const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
         const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
         const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
+        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real sps_beta_3_in_axes3_x = sps_c_3*sps_zeta_2_in_axes2_y +
+            sps_omega_2_in_axes3_y*sps_yd_3;
+        const real sps_beta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3 -
+            sps_s_3*sps_zeta_2_in_axes2_y;
+        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
+        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
+            sps_root_2*(sps_beta_3_in_axes3_y + sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z);
+        const real sps_bias_in_axes3_y = sps_root_2*(sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
+            - sps_beta_3_in_axes3_x) - sps_bias_t*sps_omega_2_in_axes3_x;
         /* (sps-rel) acceleration of the connection point left to the joint accelerations */
-        const real sps_rel_x = axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
-            axis_x_sps_axes3_z*sps_S_ddot_z - sps_bias_x;
-        const real sps_rel_y = axis_y_sps_axes3_in_base_x*sps_S_ddot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_ddot_y + axis_y_sps_axes3_in_base_z*sps_S_ddot_z -
-            sps_bias_y;
-        const real sps_rel_z = sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y +
-            sps_S_ddot_z*sps_axis_z_z + sps_root_2*(sps_omega_2_r1_x*sps_omega_2_r1_x +
-            sps_omega_2_r1_y*sps_omega_2_r1_y);
+        const real sps_rel_in_axes3_x = axis_x_sps_axes3_x*sps_S_ddot_x +
+            axis_x_sps_axes3_y*sps_S_ddot_y + axis_x_sps_axes3_z*sps_S_ddot_z -
+            sps_bias_in_axes3_x;
+        const real sps_rel_in_axes3_y = axis_y_sps_axes3_x*sps_S_ddot_x +
+            axis_y_sps_axes3_y*sps_S_ddot_y + axis_y_sps_axes3_z*sps_S_ddot_z -
+            sps_bias_in_axes3_y;
+        const real sps_rel_in_axes3_z = sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y +
+            sps_S_ddot_z*sps_w_4_z + sps_root_2*(sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x +
+            sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y);
         /* (sps-qdd_1) acceleration of joint 1 */
-        const real sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t);
-        const real sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_3 + sps_rel_y*sps_v_1_t_2);
+        const real sps_qdd_1 = inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t +
+            sps_rel_in_axes3_y*sps_v_2_in_axes3_x);
+        /* (sps-qdd_2) acceleration of joint 2 */
+        const real sps_qdd_2_t = inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_in_axes3_x*sps_v_1_in_axes3_y);
+        /* (sps-qdd_1) acceleration of joint 1 */
         o[0*count + k] = sps_qdd_1;
-        o[1*count + k] = -sps_qdd_2;
+        /* (sps-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = -sps_qdd_2_t;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
         o[2*count + k] = sps_ydd_3;
-        o[3*count + k] = sps_rel_z;
-        o[5*count + k] = (sps_qdd_1 + sps_qdd_2) + (sps_ydd_3 + sps_rel_z);
+        /* (sps-qdd_4) acceleration of joint 4 */
+        o[3*count + k] = sps_rel_in_axes3_z;
+        o[5*count + k] = (sps_qdd_1 + sps_qdd_2_t) + (sps_ydd_3 + sps_rel_in_axes3_z);
         o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
+            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -4726,27 +4896,32 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -4764,230 +4939,241 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
         /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_v_1_t = sps_c_2*sps_c_3_t;
-        const real sps_v_1_t_2 = sps_c_2*sps_s_3;
-        const real sps_v_1_t_3 = sps_root_2*sps_v_1_t_2;
-        const real sps_v_1_t_4 = sps_root_2*sps_v_1_t;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_t = sps_c_3_t*sps_root_2;
-        const real sps_v_2_t_2 = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
-        const real sps_w_1_t = sps_s_2*sps_s_3;
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t;
-        const real axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1;
-        const real axis_y_sps_axes3_in_base_x = axis_y_sps_axes3_r4_x*sps_base_frame_xx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_xy + sps_base_frame_xz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_y = axis_y_sps_axes3_r4_x*sps_base_frame_yx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_yy + sps_base_frame_yz*sps_v_1_t_2;
-        const real axis_y_sps_axes3_in_base_z = axis_y_sps_axes3_r4_x*sps_base_frame_zx +
-            axis_y_sps_axes3_r4_y*sps_base_frame_zy + sps_base_frame_zz*sps_v_1_t_2;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_in_base_y*sps_axis_z_z -
-            axis_y_sps_axes3_in_base_z*sps_axis_z_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_in_base_z*sps_axis_z_x -
-            axis_y_sps_axes3_in_base_x*sps_axis_z_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_in_base_x*sps_axis_z_y -
-            axis_y_sps_axes3_in_base_y*sps_axis_z_x;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t;
-        const real inv_sps_w_2_t_3 = 1/sps_w_2_t;
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
         /* (sps-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y;
+        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
         const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x;
+        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
+        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
         const real t_dot_x = s[12*w + j];
         const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
+        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
+        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
+        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
+        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
+        const real sps_v_2_t = sps_root_2*sps_s_3;
+        /* (sps-w_1) reciprocal vector 1 */
+        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
+            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
+        /* (sps-w_4) reciprocal vector 3 */
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_tip_x = axis_x_sps_axes3_x*sps_S_dot_x +
+        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
+        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
+        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
+        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
+        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
+        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
+            axis_y_sps_axes3_z*sps_w_4_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
+            axis_y_sps_axes3_x*sps_w_4_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
+            axis_y_sps_axes3_y*sps_w_4_x;
+        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
             axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_y = axis_y_sps_axes3_in_base_x*sps_S_dot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_dot_y + axis_y_sps_axes3_in_base_z*sps_S_dot_z;
-        const real sps_S_dot_rest_tip_z = sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y +
-            sps_S_dot_z*sps_axis_z_z;
+        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
+            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
+        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
+            sps_S_dot_z*sps_w_4_z;
+        /* (sps-qd_1) rate of joint 1 */
+        const real inv_sps_w_1_t = 1/sps_w_1_t;
+        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
         /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_1 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 -
-            sps_S_dot_rest_tip_y*sps_v_2_t);
-        const real sps_qd_2 = inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 +
-            sps_S_dot_rest_tip_y*sps_v_1_t_3);
+        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_t = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t_2 = sps_c_2*sps_qd_1;
+        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
+        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
         /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3;
-        const real sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3;
+        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
+        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
         /* (sps-omega_3) angular velocity of link 3 */
         const real sps_yd_3 = V[(place_sps_yd_3[i])*w + j];
-        const real sps_omega_3_z = sps_omega_1_t + sps_yd_3;
-        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3;
-        const real sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_y = sps_omega_1_t*sps_qd_2;
-        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y;
-        const real sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y;
+        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
         /* (sps-W_3) centripetal tensor of link 3 */
-        const real sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x;
-        const real sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y;
-        const real sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z;
-        const real sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y;
-        const real sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z;
-        const real sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z;
-        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_tip_z;
-        const real sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz +
-            sps_beta_3_y);
-        const real sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) -
-            sps_bias_t*sps_omega_2_r1_x;
-        /* (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real sps_g_tip_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y +
-            axis_x_sps_axes3_z*gravity_z;
-        const real sps_g_tip_y = axis_y_sps_axes3_in_base_x*gravity_x +
-            axis_y_sps_axes3_in_base_y*gravity_y + axis_y_sps_axes3_in_base_z*gravity_z;
-        const real sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y +
-            gravity_z*sps_axis_z_z;
+        const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
+        const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
+        const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
         /* (sps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y;
+        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z;
+        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x;
+        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x;
         /* (sps-S_ddot) acceleration of the connection point */
         const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
         const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
         const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
-        const real sps_S_ddot_tip_x = axis_x_sps_axes3_x*sps_S_ddot_x +
+        const real sps_S_ddot_in_axes3_x = axis_x_sps_axes3_x*sps_S_ddot_x +
             axis_x_sps_axes3_y*sps_S_ddot_y + axis_x_sps_axes3_z*sps_S_ddot_z;
-        const real sps_S_ddot_tip_y = axis_y_sps_axes3_in_base_x*sps_S_ddot_x +
-            axis_y_sps_axes3_in_base_y*sps_S_ddot_y + axis_y_sps_axes3_in_base_z*sps_S_ddot_z;
+        const real sps_S_ddot_in_axes3_y = axis_y_sps_axes3_x*sps_S_ddot_x +
+            axis_y_sps_axes3_y*sps_S_ddot_y + axis_y_sps_axes3_z*sps_S_ddot_z;
+        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
+        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+        const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
+        const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
+        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+        const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y;
+        const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y;
+        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
+        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
+            sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
+        const real sps_bias_in_axes3_y = sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x)
+            - sps_bias_t*sps_omega_2_in_axes3_x;
         /* (sps-rel) acceleration of the connection point left to the joint accelerations */
-        const real sps_rel_x = sps_S_ddot_tip_x - sps_bias_x;
-        const real sps_rel_y = sps_S_ddot_tip_y - sps_bias_y;
+        const real sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - sps_bias_in_axes3_x;
+        const real sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - sps_bias_in_axes3_y;
         /* (sps-qdd_1) acceleration of joint 1 */
-        const real sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t);
-        const real sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_4 + sps_rel_y*sps_v_1_t_3);
-        /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
-        const real sps_acc_4_x = sps_S_ddot_tip_x - sps_g_tip_x;
-        const real sps_acc_4_y = sps_S_ddot_tip_y - sps_g_tip_y;
-        const real sps_acc_4_z = sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y +
-            sps_S_ddot_z*sps_axis_z_z - sps_g_tip_z;
+        const real sps_qdd_1 = inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t +
+            sps_rel_in_axes3_y*sps_v_2_in_axes3_x);
+        /* (sps-qdd_2) acceleration of joint 2 */
+        const real sps_qdd_2_t = inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-alpha_2) angular acceleration of link 2 */
-        const real sps_alpha_2_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1*sps_s_2;
-        const real sps_alpha_2_y = sps_zeta_2_y - sps_c_2*sps_qdd_1;
+        const real sps_alpha_2_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1*sps_s_2;
+        const real sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1;
         /* (sps-alpha_3) angular acceleration of link 3 */
-        const real sps_alpha_3_x = sps_zeta_3_x - sps_alpha_2_y*sps_c_3_t - sps_qdd_2*sps_s_3;
-        const real sps_alpha_3_y = sps_c_3_t*sps_qdd_2 - sps_zeta_3_y - sps_alpha_2_y*sps_s_3;
+        const real sps_alpha_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_y*sps_c_3
+            - sps_qdd_2_t*sps_s_3;
+        const real sps_alpha_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3
+            - sps_c_3*sps_qdd_2_t;
         const real sps_ydd_3 = A[(place_sps_ydd_3[i])*w + j];
-        const real sps_alpha_3_z = sps_alpha_2_x + sps_ydd_3;
+        const real sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3;
         /* (sps-B_3) acceleration tensor of link 3 */
-        const real sps_B_3_xy = sps_W_3_xy - sps_alpha_3_z;
-        const real sps_B_3_xz = sps_W_3_xz + sps_alpha_3_y;
-        const real sps_B_3_yx = sps_W_3_xy + sps_alpha_3_z;
-        const real sps_B_3_yz = sps_W_3_yz - sps_alpha_3_x;
-        const real sps_B_3_zx = sps_W_3_xz - sps_alpha_3_y;
-        const real sps_B_3_zy = sps_W_3_yz + sps_alpha_3_x;
+        const real sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z;
+        const real sps_B_3_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y;
+        const real sps_B_3_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_3_in_axes3_z;
+        const real sps_B_3_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x;
+        const real sps_B_3_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y;
+        const real sps_B_3_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x;
+        /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
+            + axis_x_sps_axes3_z*gravity_z;
+        const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
+            + axis_y_sps_axes3_z*gravity_z;
+        const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
+            gravity_z*sps_w_4_z;
+        const real sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - sps_g_in_axes3_x;
+        const real sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - sps_g_in_axes3_y;
+        const real sps_acc_4_in_axes3_z = sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y +
+            sps_S_ddot_z*sps_w_4_z - sps_g_in_axes3_z;
         /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real sps_J_group_3_xy = m->sps_J_group_3_xy[i];
-        const real sps_J_group_3_xz = m->sps_J_group_3_xz[i];
-        const real sps_J_group_3_yz = m->sps_J_group_3_yz[i];
-        const real sps_Sigma_3_yy = m->sps_Sigma_3_yy[i];
-        const real sps_Sigma_3_zz = m->sps_Sigma_3_zz[i];
-        const real sps_h_3_x = m->sps_h_3_x[i];
-        const real sps_h_3_z = m->sps_h_3_z[i];
-        const real sps_h_4_x = m->sps_h_4_x[i];
-        const real sps_h_4_z = m->sps_h_4_z[i];
-        const real sps_mu_3_x = sps_B_3_yx*sps_J_group_3_xz + sps_B_3_zy*sps_Sigma_3_yy +
-            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_z*sps_h_4_z +
-            sps_g_tip_y*sps_h_3_x - sps_B_3_yz*sps_Sigma_3_zz - sps_B_3_zx*sps_J_group_3_xy -
-            sps_acc_4_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z;
-        const real sps_Sigma_3_xx = m->sps_Sigma_3_xx[i];
-        const real sps_h_3_y = m->sps_h_3_y[i];
-        const real sps_h_4_y = m->sps_h_4_y[i];
-        const real sps_mu_3_y = sps_B_3_xz*sps_Sigma_3_zz + sps_B_3_zy*sps_J_group_3_xy +
-            sps_acc_4_x*sps_h_4_x + sps_g_tip_z*sps_h_3_y - sps_B_3_xy*sps_J_group_3_yz -
-            sps_B_3_zx*sps_Sigma_3_xx - sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) -
-            sps_acc_4_z*sps_h_4_y - sps_g_tip_x*sps_h_3_x;
-        const real sps_mu_3_z = sps_B_3_xz*sps_J_group_3_yz + sps_B_3_yx*sps_Sigma_3_xx +
-            sps_J_group_3_xy*(sps_W_3_t - sps_W_3_t_2) + sps_acc_4_y*sps_h_4_y +
-            sps_g_tip_x*sps_h_3_z - sps_B_3_xy*sps_Sigma_3_yy - sps_B_3_yz*sps_J_group_3_xz -
-            sps_acc_4_x*sps_h_4_z - sps_g_tip_y*sps_h_3_y;
-        const real sps_mu_3_r0_y = sps_mu_3_x*sps_s_3 - sps_c_3_t*sps_mu_3_y;
+        const real sps_mu_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
+        const real sps_mu_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
+        const real sps_mu_3_t_3 = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
+        const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
+        const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
+        const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
+        const real sps_Sigma_3_in_axes3_yy = m->sps_Sigma_3_in_axes3_yy[i];
+        const real sps_Sigma_3_in_axes3_zz = m->sps_Sigma_3_in_axes3_zz[i];
+        const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
+        const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
+        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
+        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
+        const real sps_mu_3_in_axes3_x = sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_J_group_3_in_axes3_yz*(sps_mu_3_t_2
+            - sps_mu_3_t_3) + sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z +
+            sps_g_in_axes3_y*sps_h_3_in_spec3_x - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z;
+        const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
+        const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
+        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
+        const real sps_mu_3_in_axes3_y = sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_mu_3_t -
+            sps_mu_3_t_3) - sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
+            sps_g_in_axes3_x*sps_h_3_in_spec3_x;
+        const real sps_mu_3_in_axes3_z = sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_mu_3_t -
+            sps_mu_3_t_2) + sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
+            sps_g_in_axes3_x*sps_h_3_in_spec3_z - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+            sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y;
+        const real sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_y +
+            sps_mu_3_in_axes3_x*sps_s_3;
         /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
-        const real sps_Gamma_1 = sps_mu_3_x*sps_v_1_t + sps_mu_3_y*sps_v_1_t_2 +
-            sps_mu_3_z*sps_s_2;
+        const real sps_Gamma_1 = sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y + sps_mu_3_in_axes3_z*sps_s_2;
         /* (sps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real sps_c_x = sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) -
-            inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t_2 - sps_mu_3_r0_y*sps_v_1_t_4) -
-            sps_B_3_xy*sps_h_4_z - sps_B_3_xz*sps_h_4_x;
-        const real sps_c_y = inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t + sps_mu_3_r0_y*sps_v_1_t_3) +
-            sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) - sps_B_3_yx*sps_h_4_y - sps_B_3_yz*sps_h_4_x;
+        const real sps_c_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_t_2 + sps_mu_3_t_3) -
+            inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t + sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) -
+            sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x;
+        const real sps_c_in_axes3_y = inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_t + sps_mu_3_t_3) -
+            sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x;
         /* (sps-c_true) leg force on the platform without actuation, the last link's mass included */
         const real sps_link4_mass = m->sps_link4_mass[i];
-        const real sps_c_true_x = sps_c_x - sps_acc_4_x*sps_link4_mass;
-        const real sps_c_true_y = sps_c_y - sps_acc_4_y*sps_link4_mass;
-        const real sps_c_true_z = sps_h_4_x*(sps_W_3_t + sps_W_3_t_2) - sps_B_3_zx*sps_h_4_y -
-            sps_B_3_zy*sps_h_4_z - sps_acc_4_z*sps_link4_mass;
-        const real sps_c_true_in_base_x = axis_x_sps_axes3_x*sps_c_true_x +
-            axis_y_sps_axes3_in_base_x*sps_c_true_y + sps_axis_z_x*sps_c_true_z;
-        const real sps_c_true_in_base_y = axis_x_sps_axes3_y*sps_c_true_x +
-            axis_y_sps_axes3_in_base_y*sps_c_true_y + sps_axis_z_y*sps_c_true_z;
-        const real sps_c_true_in_base_z = axis_x_sps_axes3_z*sps_c_true_x +
-            axis_y_sps_axes3_in_base_z*sps_c_true_y + sps_axis_z_z*sps_c_true_z;
-        o[0*count + k] = sps_c_true_in_base_x;
-        o[1*count + k] = sps_c_true_in_base_y;
-        o[2*count + k] = sps_c_true_in_base_z;
-        o[3*count + k] = sps_axis_z_x;
-        o[4*count + k] = sps_axis_z_y;
-        o[5*count + k] = sps_axis_z_z;
+        const real sps_c_true_in_axes3_x = sps_c_in_axes3_x - sps_acc_4_in_axes3_x*sps_link4_mass;
+        const real sps_c_true_in_axes3_y = sps_c_in_axes3_y - sps_acc_4_in_axes3_y*sps_link4_mass;
+        const real sps_c_true_in_axes3_z = sps_h_4_in_spec3_x*(sps_mu_3_t + sps_mu_3_t_2) -
+            sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y - sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z -
+            sps_acc_4_in_axes3_z*sps_link4_mass;
+        const real sps_c_true_x = axis_x_sps_axes3_x*sps_c_true_in_axes3_x +
+            axis_y_sps_axes3_x*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*sps_w_4_x;
+        const real sps_c_true_y = axis_x_sps_axes3_y*sps_c_true_in_axes3_x +
+            axis_y_sps_axes3_y*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*sps_w_4_y;
+        const real sps_c_true_z = axis_x_sps_axes3_z*sps_c_true_in_axes3_x +
+            axis_y_sps_axes3_z*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*sps_w_4_z;
+        /* (sps-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = sps_c_true_x;
+        o[1*count + k] = sps_c_true_y;
+        o[2*count + k] = sps_c_true_z;
+        /* (sps-w_4) reciprocal vector 3 */
+        o[3*count + k] = sps_w_4_x;
+        o[4*count + k] = sps_w_4_y;
+        o[5*count + k] = sps_w_4_z;
         o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
+            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -5058,13 +5244,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
+            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
+            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -5114,6 +5302,11 @@ INLINE void potential_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         const real t_z = s[2*w + j];
         const real sps_S_z = t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -5131,59 +5324,57 @@ INLINE void potential_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         /* (sps-root_1) amplitude, with the sign of the branch */
         const real sps_branch_1 = m->sps_branch_1[i];
         const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_sps_root_1 = 1/sps_root_1;
+        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+        const real sps_s_1 = inv_sps_root_1*sps_px_1;
         /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2 = inv_sps_root_2*sps_root_1;
+        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
         /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_t;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
+        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
         /* (potential) potential energy */
-        const real sps_g_r0_x = m->sps_g_r0_x[i];
-        const real sps_g_r0_y = m->sps_g_r0_y[i];
-        const real sps_g_r1_x = sps_g_r0_y*sps_s_1 - sps_c_1*sps_g_r0_x;
-        const real sps_g_r1_y = -sps_c_1*sps_g_r0_y - sps_g_r0_x*sps_s_1;
-        const real sps_g_r0_z = m->sps_g_r0_z[i];
-        const real sps_g_r3_y = -sps_c_2*sps_g_r0_z - sps_g_r1_y*sps_s_2;
-        const real sps_b_r0_x = m->sps_b_r0_x[i];
-        const real sps_b_r0_y = m->sps_b_r0_y[i];
-        const real sps_b_r1_x = sps_b_r0_y*sps_s_1 - sps_b_r0_x*sps_c_1;
-        const real sps_b_r1_y = -sps_b_r0_x*sps_s_1 - sps_b_r0_y*sps_c_1;
-        const real sps_b_r0_z = m->sps_b_r0_z[i];
-        const real sps_b_r3_y = -sps_b_r0_z*sps_c_2 - sps_b_r1_y*sps_s_2;
-        const real sps_h_3_x = m->sps_h_3_x[i];
-        const real sps_h_3_y = m->sps_h_3_y[i];
-        const real sps_h_3_z = m->sps_h_3_z[i];
-        const real sps_h_4_x = m->sps_h_4_x[i];
-        const real sps_h_4_y = m->sps_h_4_y[i];
-        const real sps_h_4_z = m->sps_h_4_z[i];
+        const real sps_potential_t = m->sps_potential_t[i];
+        const real sps_potential_t_2 = m->sps_potential_t_2[i];
+        const real sps_potential_t_7 = sps_c_1*sps_potential_t + sps_potential_t_2*sps_s_1;
+        const real sps_potential_t_8 = sps_c_1*sps_potential_t_2 - sps_potential_t*sps_s_1;
+        const real sps_potential_t_3 = m->sps_potential_t_3[i];
+        const real sps_potential_t_9 = -sps_c_2_t*sps_potential_t_3 - sps_potential_t_8*sps_s_2;
+        const real sps_potential_t_4 = m->sps_potential_t_4[i];
+        const real sps_potential_t_5 = m->sps_potential_t_5[i];
+        const real sps_potential_t_10 = sps_c_1*sps_potential_t_4 + sps_potential_t_5*sps_s_1;
+        const real sps_potential_t_11 = sps_c_1*sps_potential_t_5 - sps_potential_t_4*sps_s_1;
+        const real sps_potential_t_6 = m->sps_potential_t_6[i];
+        const real sps_potential_t_12 = -sps_c_2_t*sps_potential_t_6 - sps_potential_t_11*sps_s_2;
+        const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
+        const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
+        const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
+        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
+        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
+        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
         const real sps_link3_mass = m->sps_link3_mass[i];
-        const real sps_potential_t = (sps_g_r0_z*sps_s_2 - sps_c_2*sps_g_r1_y)*(sps_h_3_x +
-            sps_h_4_x + sps_link3_mass*(sps_b_r0_z*sps_s_2 - sps_b_r1_y*sps_c_2)) +
-            (-sps_c_3_t*sps_g_r1_x - sps_g_r3_y*sps_s_3)*(sps_h_3_z + sps_h_4_z +
-            sps_link3_mass*(-sps_b_r1_x*sps_c_3_t - sps_b_r3_y*sps_s_3)) + (sps_g_r1_x*sps_s_3 -
-            sps_c_3_t*sps_g_r3_y)*(sps_h_3_y + sps_h_4_y + sps_link3_mass*(sps_b_r1_x*sps_s_3 -
-            sps_b_r3_y*sps_c_3_t));
-        terms[0*count + k] = add ? terms[0*count + k] + sps_potential_t : sps_potential_t;  /* total_sps */
+        const real sps_potential_t_13 = (sps_potential_t_3*sps_s_2 -
+            sps_c_2_t*sps_potential_t_8)*(sps_h_3_in_spec3_x + sps_h_4_in_spec3_x +
+            sps_link3_mass*(sps_potential_t_6*sps_s_2 - sps_c_2_t*sps_potential_t_11)) +
+            (sps_c_3*sps_potential_t_7 - sps_potential_t_9*sps_s_3)*(sps_h_3_in_spec3_z +
+            sps_h_4_in_spec3_z + sps_link3_mass*(sps_c_3*sps_potential_t_10 -
+            sps_potential_t_12*sps_s_3)) + (sps_c_3*sps_potential_t_9 +
+            sps_potential_t_7*sps_s_3)*(sps_h_3_in_spec3_y + sps_h_4_in_spec3_y +
+            sps_link3_mass*(sps_c_3*sps_potential_t_12 + sps_potential_t_10*sps_s_3));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + sps_potential_t_13 : sps_potential_t_13;  /* potential_t_2 */
         o[0*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
@@ -5201,8 +5392,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_sps = sums[0*w + k];
-        const real potential_ = -potential_t - total_sps;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -5272,6 +5464,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -5293,27 +5486,32 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_in_base_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
             R_xz*sps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real sps_q_in_base_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
             R_yz*sps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real sps_q_in_base_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
             R_zz*sps_platform_point_z;
         const real sps_base_point_x = m->sps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x;
+        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
         const real sps_base_point_y = m->sps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y;
+        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
         const real sps_base_point_z = m->sps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z;
+        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
+        const real sps_c_3 = -sine(sps_y_3_extra);
+        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+        const real sps_s_3 = cosine(sps_y_3_extra);
         /* (sps-px_1) component along the reference direction */
         const real sps_base_frame_xx = m->sps_base_frame_xx[i];
         const real sps_base_frame_yx = m->sps_base_frame_yx[i];
@@ -5332,65 +5530,62 @@ INLINE void condition_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         const real sps_base_frame_xz = m->sps_base_frame_xz[i];
         const real sps_base_frame_yz = m->sps_base_frame_yz[i];
         const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_t = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
             sps_S_z*sps_base_frame_zz;
         /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t;
+        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
         /* (sps-root_2) amplitude, with the sign of the branch */
         const real sps_branch_2 = m->sps_branch_2[i];
         const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_sps_root_2 = 1/sps_root_2;
         const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_c_2 = inv_sps_root_2*sps_branch_1*root(sps_rho2_1);
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[(place_sps_y_3_extra[i])*w + j];
-        const real sps_c_3_t = sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
+        const real sps_c_2_t = inv_sps_root_2*sps_branch_1*root(sps_rho2_1);
         /* (sps-w_1) reciprocal vector 1 */
-        const real sps_axis_z_x = inv_sps_root_2*sps_S_x;
-        const real sps_axis_z_y = inv_sps_root_2*sps_S_y;
-        const real sps_axis_z_z = inv_sps_root_2*sps_S_z;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_t = sps_c_2*sps_c_3_t*sps_c_3_t*sps_root_2*sps_root_2 +
-            sps_c_2*sps_root_2*sps_root_2*sps_s_3*sps_s_3;
-        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        const real sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z;
-        const real sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x;
-        const real sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real sps_spread_t = b_c_x - sps_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real sps_spread_t_2 = b_c_y - sps_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real sps_spread_t_3 = b_c_z - sps_platform_point_z;
-        const real sps_spread_t_4 = sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 +
-            sps_spread_t_3*sps_spread_t_3;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_pivot_size = magnitude(sps_rho2_1);
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_pivot_size_2 = magnitude(sps_rho2_2);
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_pivot_size_3 = magnitude(sps_w_2_t);
+        const real sps_w_1_t = sps_c_2_t*sps_c_3*sps_c_3*sps_root_2*sps_root_2 +
+            sps_c_2_t*sps_root_2*sps_root_2*sps_s_3*sps_s_3;
+        /* (sps-w_4) reciprocal vector 3 */
+        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
         /* (sps-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real sps_pivot_size = magnitude(sps_rho2_1);
+        const real sps_pivot_size_2 = magnitude(sps_rho2_2);
+        const real sps_pivot_size_3 = magnitude(sps_w_1_t);
         const real sps_least_pivots = lesser(lesser(R(1.25)*root(sps_pivot_size),
             R(1.25)*root(sps_pivot_size_2)), R(1.5624999999999998)*sps_pivot_size_3);
-        terms[0*count + k] = add ? terms[0*count + k] + sps_spread_t_4 : sps_spread_t_4;  /* total_sps */
-        o[0*count + k] = sps_axis_z_x;
-        o[1*count + k] = sps_axis_z_y;
-        o[2*count + k] = sps_axis_z_z;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+        const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
+        const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
+        const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real sps_spread_t = b_c_in_platform_x - sps_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real sps_spread_t_2 = b_c_in_platform_y - sps_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real sps_spread_t_3 = b_c_in_platform_z - sps_platform_point_z;
+        const real sps_spread_t_4 = sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 +
+            sps_spread_t_3*sps_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + sps_spread_t_4 : sps_spread_t_4;  /* spread_sps */
+        /* (sps-w_4) reciprocal vector 3 */
+        o[0*count + k] = sps_w_4_x;
+        o[1*count + k] = sps_w_4_y;
+        o[2*count + k] = sps_w_4_z;
+        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
         o[3*count + k] = sps_H_a_4_x;
         o[4*count + k] = sps_H_a_4_y;
         o[5*count + k] = sps_H_a_4_z;
+        /* (sps-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[6*count + k] = sps_least_pivots;
-        o[8*count + k] = (sps_axis_z_x + (sps_axis_z_y + sps_axis_z_z)) + ((sps_H_a_4_x +
-            sps_H_a_4_y) + (sps_H_a_4_z + sps_least_pivots));
+        o[8*count + k] = (sps_w_4_x + (sps_w_4_y + sps_w_4_z)) + ((sps_H_a_4_x + sps_H_a_4_y) +
+            (sps_H_a_4_z + sps_least_pivots));
         o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(sps_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-sps_w_2_t) > TOLERANCE*R(0.6400000000000001));
+            UNLESS(magnitude(sps_w_1_t) > TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -5415,9 +5610,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_sps = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_sps = sums[0*w + k];
-        const real spread_ = spread_t*root(total_sps);
+        const real spread_ = root(spread_sps)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

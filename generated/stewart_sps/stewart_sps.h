@@ -97,19 +97,23 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 6 legs of type sps; copies of the first fill up */
-    stewart_sps_real sps_J_group_3_xx[8], sps_J_group_3_xy[8], sps_J_group_3_xz[8],
-            sps_J_group_3_yy[8], sps_J_group_3_yz[8], sps_J_group_3_zz[8], sps_Sigma_3_xx[8],
-            sps_Sigma_3_yy[8], sps_Sigma_3_zz[8], sps_b_r0_x[8], sps_b_r0_y[8], sps_b_r0_z[8],
-            sps_base_frame_xx[8], sps_base_frame_xy[8], sps_base_frame_xz[8], sps_base_frame_yx[8],
-            sps_base_frame_yy[8], sps_base_frame_yz[8], sps_base_frame_zx[8], sps_base_frame_zy[8],
-            sps_base_frame_zz[8], sps_base_point_x[8], sps_base_point_y[8], sps_base_point_z[8],
-            sps_branch_1[8], sps_branch_2[8], sps_g_r0_x[8], sps_g_r0_y[8], sps_g_r0_z[8],
-            sps_h_3_x[8], sps_h_3_y[8], sps_h_3_z[8], sps_h_4_x[8], sps_h_4_y[8], sps_h_4_z[8],
-            sps_link3_mass[8], sps_link4_mass[8], sps_platform_point_x[8], sps_platform_point_y[8],
-            sps_platform_point_z[8];
-    stewart_sps_real J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
+    stewart_sps_real sps_J_group_3_in_axes3_xx[8], sps_J_group_3_in_axes3_xy[8],
+            sps_J_group_3_in_axes3_xz[8], sps_J_group_3_in_axes3_yy[8], sps_J_group_3_in_axes3_yz[8],
+            sps_J_group_3_in_axes3_zz[8], sps_Sigma_3_in_axes3_xx[8], sps_Sigma_3_in_axes3_yy[8],
+            sps_Sigma_3_in_axes3_zz[8], sps_base_frame_xx[8], sps_base_frame_xy[8],
+            sps_base_frame_xz[8], sps_base_frame_yx[8], sps_base_frame_yy[8], sps_base_frame_yz[8],
+            sps_base_frame_zx[8], sps_base_frame_zy[8], sps_base_frame_zz[8], sps_base_point_x[8],
+            sps_base_point_y[8], sps_base_point_z[8], sps_branch_1[8], sps_branch_2[8],
+            sps_h_3_in_spec3_x[8], sps_h_3_in_spec3_y[8], sps_h_3_in_spec3_z[8],
+            sps_h_4_in_spec3_x[8], sps_h_4_in_spec3_y[8], sps_h_4_in_spec3_z[8], sps_link3_mass[8],
+            sps_link4_mass[8], sps_platform_point_x[8], sps_platform_point_y[8],
+            sps_platform_point_z[8], sps_potential_t[8], sps_potential_t_2[8], sps_potential_t_3[8],
+            sps_potential_t_4[8], sps_potential_t_5[8], sps_potential_t_6[8];
+    stewart_sps_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+            J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, m_star, spread_t;
 } stewart_sps_model;
 
 extern const stewart_sps_params stewart_sps_default_params;

@@ -377,7 +377,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -571,48 +571,58 @@ def _prepare(p):
     spread_t = 0.16666666666666666*sqrt(6.0)
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.9595917942265426*spread_t
+    # (sps-h_3) first moment of link 3 about the origin of link 3
+    sps_h_3_in_spec3_x = sps_link3_centre_of_mass_x*sps_link3_mass
+    sps_h_3_in_spec3_y = sps_link3_centre_of_mass_y*sps_link3_mass
+    sps_h_3_in_spec3_z = sps_link3_centre_of_mass_z*sps_link3_mass
     # (sps-h_4) first moment of link 4 about the connection point
-    sps_h_4_x = sps_link4_centre_of_mass_x*sps_link4_mass
-    sps_h_4_y = sps_link4_centre_of_mass_y*sps_link4_mass
-    sps_h_4_z = sps_link4_centre_of_mass_z*sps_link4_mass
-    # (sps-J_3) inertia tensor of link 3 about the origin of link 3
-    sps_J_3_t = sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_x
-    sps_J_3_t_2 = sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_y
-    sps_J_3_t_3 = sps_link3_centre_of_mass_z*sps_link3_centre_of_mass_z
-    sps_J_3_t_4 = sps_J_3_t + sps_J_3_t_2 + sps_J_3_t_3
-    # (sps-J_4) inertia tensor of link 4 about the connection point
-    sps_J_4_t = sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_x
-    sps_J_4_t_2 = sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_y
-    sps_J_4_t_3 = sps_link4_centre_of_mass_z*sps_link4_centre_of_mass_z
-    sps_J_4_t_4 = sps_J_4_t + sps_J_4_t_2 + sps_J_4_t_3
+    sps_h_4_in_spec3_x = sps_link4_centre_of_mass_x*sps_link4_mass
+    sps_h_4_in_spec3_y = sps_link4_centre_of_mass_y*sps_link4_mass
+    sps_h_4_in_spec3_z = sps_link4_centre_of_mass_z*sps_link4_mass
     # (sps-J_group_3) inertia of the links that turn with link 3, each about its reference point
-    sps_J_group_3_xx = (
-    sps_link3_inertia_yy + sps_link4_inertia_yy - sps_link3_mass*(sps_J_3_t_2 - sps_J_3_t_4) -
-        sps_link4_mass*(sps_J_4_t_2 - sps_J_4_t_4)
+    sps_J_group_3_t = sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_x
+    sps_J_group_3_t_2 = sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_y
+    sps_J_group_3_t_3 = sps_link3_centre_of_mass_z*sps_link3_centre_of_mass_z
+    sps_J_group_3_t_4 = sps_J_group_3_t + sps_J_group_3_t_2 + sps_J_group_3_t_3
+    sps_J_group_3_t_5 = sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_x
+    sps_J_group_3_t_6 = sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_y
+    sps_J_group_3_t_7 = sps_link4_centre_of_mass_z*sps_link4_centre_of_mass_z
+    sps_J_group_3_t_8 = sps_J_group_3_t_5 + sps_J_group_3_t_6 + sps_J_group_3_t_7
+    sps_J_group_3_in_axes3_xx = (
+    sps_link3_inertia_yy + sps_link4_inertia_yy - sps_link3_mass*(sps_J_group_3_t_2 -
+        sps_J_group_3_t_4) - sps_link4_mass*(sps_J_group_3_t_6 - sps_J_group_3_t_8)
     )
-    sps_J_group_3_xy = (
+    sps_J_group_3_in_axes3_xy = (
     sps_link3_inertia_yz + sps_link4_inertia_yz -
         sps_link3_centre_of_mass_y*sps_link3_centre_of_mass_z*sps_link3_mass -
         sps_link4_centre_of_mass_y*sps_link4_centre_of_mass_z*sps_link4_mass
     )
-    sps_J_group_3_xz = (
+    sps_J_group_3_in_axes3_xz = (
     sps_link3_inertia_xy + sps_link4_inertia_xy -
         sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_y*sps_link3_mass -
         sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_y*sps_link4_mass
     )
-    sps_J_group_3_yy = (
-    sps_link3_inertia_zz + sps_link4_inertia_zz - sps_link3_mass*(sps_J_3_t_3 - sps_J_3_t_4) -
-        sps_link4_mass*(sps_J_4_t_3 - sps_J_4_t_4)
+    sps_J_group_3_in_axes3_yy = (
+    sps_link3_inertia_zz + sps_link4_inertia_zz - sps_link3_mass*(sps_J_group_3_t_3 -
+        sps_J_group_3_t_4) - sps_link4_mass*(sps_J_group_3_t_7 - sps_J_group_3_t_8)
     )
-    sps_J_group_3_yz = (
+    sps_J_group_3_in_axes3_yz = (
     sps_link3_inertia_xz + sps_link4_inertia_xz -
         sps_link3_centre_of_mass_x*sps_link3_centre_of_mass_z*sps_link3_mass -
         sps_link4_centre_of_mass_x*sps_link4_centre_of_mass_z*sps_link4_mass
     )
-    sps_J_group_3_zz = (
-    sps_link3_inertia_xx + sps_link4_inertia_xx - sps_link3_mass*(sps_J_3_t - sps_J_3_t_4) -
-        sps_link4_mass*(sps_J_4_t - sps_J_4_t_4)
+    sps_J_group_3_in_axes3_zz = (
+    sps_link3_inertia_xx + sps_link4_inertia_xx - sps_link3_mass*(sps_J_group_3_t -
+        sps_J_group_3_t_4) - sps_link4_mass*(sps_J_group_3_t_5 - sps_J_group_3_t_8)
     )
+    # (sps-trace_J_3) half the trace of that inertia tensor
+    sps_trace_J_3 = (
+    0.5*sps_J_group_3_in_axes3_xx + 0.5*sps_J_group_3_in_axes3_yy + 0.5*sps_J_group_3_in_axes3_zz
+    )
+    # (sps-Sigma_3) second moment of mass of the links that turn with link 3
+    sps_Sigma_3_in_axes3_xx = sps_trace_J_3 - sps_J_group_3_in_axes3_xx
+    sps_Sigma_3_in_axes3_yy = sps_trace_J_3 - sps_J_group_3_in_axes3_yy
+    sps_Sigma_3_in_axes3_zz = sps_trace_J_3 - sps_J_group_3_in_axes3_zz
     # (h_star) first moment about the platform origin
     sps_h_star_t = sps_link4_mass*sps_platform_point_x
     sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y
@@ -628,119 +638,119 @@ def _prepare(p):
     sps_J_star_t_8 = sps_link4_mass*(sps_J_star_t_2 - sps_J_star_t_4)
     sps_J_star_t_9 = sps_link4_mass*sps_platform_point_y*sps_platform_point_z
     sps_J_star_t_10 = sps_link4_mass*(sps_J_star_t_3 - sps_J_star_t_4)
-    # (sps-h_3) first moment of link 3 about the origin of link 3
-    sps_h_3_x = sps_link3_centre_of_mass_x*sps_link3_mass
-    sps_h_3_y = sps_link3_centre_of_mass_y*sps_link3_mass
-    sps_h_3_z = sps_link3_centre_of_mass_z*sps_link3_mass
-    # (sps-trace_J_3) half the trace of that inertia tensor
-    sps_trace_J_3 = 0.5*sps_J_group_3_xx + 0.5*sps_J_group_3_yy + 0.5*sps_J_group_3_zz
-    # (sps-Sigma_3) second moment of mass of the links that turn with link 3
-    sps_Sigma_3_xx = sps_trace_J_3 - sps_J_group_3_xx
-    sps_Sigma_3_yy = sps_trace_J_3 - sps_J_group_3_yy
-    sps_Sigma_3_zz = sps_trace_J_3 - sps_J_group_3_zz
     # (potential) potential energy
-    sps_g_r0_x = (
+    sps_potential_t = (
     gravity_x*sps_base_frame_xx + gravity_y*sps_base_frame_yx + gravity_z*sps_base_frame_zx
     )
-    sps_g_r0_y = (
+    sps_potential_t_2 = (
     gravity_x*sps_base_frame_xy + gravity_y*sps_base_frame_yy + gravity_z*sps_base_frame_zy
     )
-    sps_g_r0_z = (
+    sps_potential_t_3 = (
     gravity_x*sps_base_frame_xz + gravity_y*sps_base_frame_yz + gravity_z*sps_base_frame_zz
     )
-    sps_b_r0_x = (
+    sps_potential_t_4 = (
     sps_base_frame_xx*sps_base_point_x + sps_base_frame_yx*sps_base_point_y +
         sps_base_frame_zx*sps_base_point_z
     )
-    sps_b_r0_y = (
+    sps_potential_t_5 = (
     sps_base_frame_xy*sps_base_point_x + sps_base_frame_yy*sps_base_point_y +
         sps_base_frame_zy*sps_base_point_z
     )
-    sps_b_r0_z = (
+    sps_potential_t_6 = (
     sps_base_frame_xz*sps_base_point_x + sps_base_frame_yz*sps_base_point_y +
         sps_base_frame_zz*sps_base_point_z
     )
-    total_sps = np.sum(np.broadcast_to(sps_link4_mass, _sps))
-    total_sps_x = np.sum(np.broadcast_to(sps_h_star_t, _sps))
-    total_sps_y = np.sum(np.broadcast_to(sps_h_star_t_2, _sps))
-    total_sps_z = np.sum(np.broadcast_to(sps_h_star_t_3, _sps))
-    total_sps_xx = np.sum(np.broadcast_to(sps_J_star_t_5, _sps))
-    total_sps_xy = np.sum(np.broadcast_to(sps_J_star_t_6, _sps))
-    total_sps_xz = np.sum(np.broadcast_to(sps_J_star_t_7, _sps))
-    total_sps_yy = np.sum(np.broadcast_to(sps_J_star_t_8, _sps))
-    total_sps_yz = np.sum(np.broadcast_to(sps_J_star_t_9, _sps))
-    total_sps_zz = np.sum(np.broadcast_to(sps_J_star_t_10, _sps))
-    total_sps_x_2 = np.sum(np.broadcast_to(sps_platform_point_x, _sps))
-    total_sps_y_2 = np.sum(np.broadcast_to(sps_platform_point_y, _sps))
-    total_sps_z_2 = np.sum(np.broadcast_to(sps_platform_point_z, _sps))
+    m_star_sps = np.sum(np.broadcast_to(sps_link4_mass, _sps))
+    h_star_sps_in_platform_x = np.sum(np.broadcast_to(sps_h_star_t, _sps))
+    h_star_sps_in_platform_y = np.sum(np.broadcast_to(sps_h_star_t_2, _sps))
+    h_star_sps_in_platform_z = np.sum(np.broadcast_to(sps_h_star_t_3, _sps))
+    J_star_sps_in_platform_xx = np.sum(np.broadcast_to(-sps_J_star_t_5, _sps))
+    J_star_sps_in_platform_xy = np.sum(np.broadcast_to(-sps_J_star_t_6, _sps))
+    J_star_sps_in_platform_xz = np.sum(np.broadcast_to(-sps_J_star_t_7, _sps))
+    J_star_sps_in_platform_yy = np.sum(np.broadcast_to(-sps_J_star_t_8, _sps))
+    J_star_sps_in_platform_yz = np.sum(np.broadcast_to(-sps_J_star_t_9, _sps))
+    J_star_sps_in_platform_zz = np.sum(np.broadcast_to(-sps_J_star_t_10, _sps))
+    b_c_sps_in_platform_x = np.sum(np.broadcast_to(sps_platform_point_x, _sps))
+    b_c_sps_in_platform_y = np.sum(np.broadcast_to(sps_platform_point_y, _sps))
+    b_c_sps_in_platform_z = np.sum(np.broadcast_to(sps_platform_point_z, _sps))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_sps
+    m_star = m_star_sps + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_sps_x
-    h_star_y = h_star_t_2 + total_sps_y
-    h_star_z = h_star_t_3 + total_sps_z
+    h_star_in_platform_x = h_star_sps_in_platform_x + h_star_t
+    h_star_in_platform_y = h_star_sps_in_platform_y + h_star_t_2
+    h_star_in_platform_z = h_star_sps_in_platform_z + h_star_t_3
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_sps_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_sps_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_sps_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_sps_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_sps_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_sps_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_sps_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_sps_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_sps_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_sps_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_sps_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_sps_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.16666666666666666*total_sps_x_2
-    b_c_y = 0.16666666666666666*total_sps_y_2
-    b_c_z = 0.16666666666666666*total_sps_z_2
+    b_c_in_platform_x = 0.16666666666666666*b_c_sps_in_platform_x
+    b_c_in_platform_y = 0.16666666666666666*b_c_sps_in_platform_y
+    b_c_in_platform_z = 0.16666666666666666*b_c_sps_in_platform_z
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_sps,
-        (sps_J_group_3_xx, sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yy, sps_J_group_3_yz,
-                    sps_J_group_3_zz, sps_Sigma_3_xx, sps_Sigma_3_yy, sps_Sigma_3_zz,
-                    sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
-                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
-                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
-                    sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z, sps_h_4_x,
-                    sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
-                    sps_platform_point_z,),
+        (sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
+                    sps_J_group_3_in_axes3_yy, sps_J_group_3_in_axes3_yz,
+                    sps_J_group_3_in_axes3_zz, sps_Sigma_3_in_axes3_xx, sps_Sigma_3_in_axes3_yy,
+                    sps_Sigma_3_in_axes3_zz, sps_base_frame_xx, sps_base_frame_xy,
+                    sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz,
+                    sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x,
+                    sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2,
+                    sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
+                    sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z,
+                    sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_sps,
-        (sps_J_group_3_xx, sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yy, sps_J_group_3_yz,
-                    sps_J_group_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
-                    sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
-                    sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
-                    sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_4_x, sps_h_4_y, sps_h_4_z,
+        (sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
+                    sps_J_group_3_in_axes3_yy, sps_J_group_3_in_axes3_yz,
+                    sps_J_group_3_in_axes3_zz, sps_base_frame_xx, sps_base_frame_xy,
+                    sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz,
+                    sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x,
+                    sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2,
+                    sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z,
                     sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_sps,
-        (sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
-                    sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
-                    sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
-                    sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
-                    sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
-                    sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
+        (sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
+                    sps_Sigma_3_in_axes3_xx, sps_Sigma_3_in_axes3_yy, sps_Sigma_3_in_axes3_zz,
+                    sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y,
+                    sps_h_3_in_spec3_z, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
+                    sps_h_4_in_spec3_z, sps_platform_point_x, sps_platform_point_y,
                     sps_platform_point_z,),
                 ),
             ),
@@ -758,16 +768,20 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_sps,
-        (sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
-                    sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
-                    sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
-                    sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
-                    sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
-                    sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
+        (sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
+                    sps_Sigma_3_in_axes3_xx, sps_Sigma_3_in_axes3_yy, sps_Sigma_3_in_axes3_zz,
+                    sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y,
+                    sps_h_3_in_spec3_z, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
+                    sps_h_4_in_spec3_z, sps_platform_point_x, sps_platform_point_y,
                     sps_platform_point_z,),
                 ),
             ),
@@ -812,32 +826,37 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z,),
             (
                 (_sps,
-        (sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
-                    sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
-                    sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
-                    sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
-                    sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
-                    sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_link4_mass, sps_platform_point_x,
+        (sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
+                    sps_Sigma_3_in_axes3_xx, sps_Sigma_3_in_axes3_yy, sps_Sigma_3_in_axes3_zz,
+                    sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y,
+                    sps_h_3_in_spec3_z, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
+                    sps_h_4_in_spec3_z, sps_link4_mass, sps_platform_point_x,
                     sps_platform_point_y, sps_platform_point_z,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_sps,
-        (sps_b_r0_x, sps_b_r0_y, sps_b_r0_z, sps_base_frame_xx, sps_base_frame_xy,
-                    sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz,
-                    sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x,
-                    sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2, sps_g_r0_x,
-                    sps_g_r0_y, sps_g_r0_z, sps_h_3_x, sps_h_3_y, sps_h_3_z, sps_h_4_x, sps_h_4_y,
-                    sps_h_4_z, sps_link3_mass, sps_platform_point_x, sps_platform_point_y,
-                    sps_platform_point_z,),
+        (sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+                    sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+                    sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z,
+                    sps_branch_1, sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y,
+                    sps_h_3_in_spec3_z, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y,
+                    sps_h_4_in_spec3_z, sps_link3_mass, sps_platform_point_x,
+                    sps_platform_point_y, sps_platform_point_z, sps_potential_t,
+                    sps_potential_t_2, sps_potential_t_3, sps_potential_t_4, sps_potential_t_5,
+                    sps_potential_t_6,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_sps,
         (sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
@@ -1360,9 +1379,10 @@ def _run_dynamics(m, X, V):
     cos = m.cos
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1417,74 +1437,98 @@ def _run_dynamics(m, X, V):
     out_Z = m.zeros("Z")
     out_H = m.zeros("H")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        sps_J_group_3_xx, sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yy, sps_J_group_3_yz,
-            sps_J_group_3_zz, sps_Sigma_3_xx, sps_Sigma_3_yy, sps_Sigma_3_zz, sps_base_frame_xx,
-            sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy,
-            sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz,
-            sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2,
-            sps_h_3_x, sps_h_3_y, sps_h_3_z, sps_h_4_x, sps_h_4_y, sps_h_4_z,
-            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
+        sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
+            sps_J_group_3_in_axes3_yy, sps_J_group_3_in_axes3_yz, sps_J_group_3_in_axes3_zz,
+            sps_Sigma_3_in_axes3_xx, sps_Sigma_3_in_axes3_yy, sps_Sigma_3_in_axes3_zz,
+            sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
+            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_platform_point_x,
+            sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -1497,448 +1541,496 @@ def _run_dynamics(m, X, V):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = -inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_root_1
+        sps_c_2_t = inv_sps_root_2*sps_root_1
         # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_t
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_v_1_t = sps_c_2*sps_c_3_t
-        sps_v_1_t_2 = sps_c_2*sps_s_3
-        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
-        sps_v_1_t_4 = sps_root_2*sps_v_1_t
-        # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_t = sps_c_3_t*sps_root_2
-        sps_v_2_t_2 = sps_root_2*sps_s_3
-        # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
-        sps_w_1_t = sps_s_2*sps_s_3
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-w_1) reciprocal vector 1
-        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
-        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
-        axis_y_sps_axes3_in_base_x = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
-            sps_base_frame_xz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_y = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
-            sps_base_frame_yz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_z = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
-            sps_base_frame_zz*sps_v_1_t_2
-        )
-        axis_x_sps_axes3_x = (
-        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
-        )
-        axis_x_sps_axes3_y = (
-        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
-        )
-        axis_x_sps_axes3_z = (
-        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
-        )
-        # (sps-w_2) reciprocal vector 2
-        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
-        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
-        sps_w_2_t_2 = inv_sps_w_2_t_3*sps_v_1_t_4
-        sps_w_2_t_3 = inv_sps_w_2_t_3*sps_v_1_t_3
-        # (sps-w_1) reciprocal vector 1
-        sps_w_1_t_2 = inv_sps_w_2_t_3*sps_v_2_t_2
-        sps_w_1_t_3 = inv_sps_w_2_t_3*sps_v_2_t
-        # (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        sps_d_alpha_1_zx = sps_s_2*sps_w_1_t_2
-        sps_d_alpha_1_zy = sps_s_2*sps_w_1_t_3
-        # (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2
-        sps_d_alpha_2_xx = sps_v_1_t*sps_w_1_t_2 - sps_s_3*sps_w_2_t_2
-        sps_d_alpha_2_xy = -sps_s_3*sps_w_2_t_3 - sps_v_1_t*sps_w_1_t_3
-        sps_d_alpha_2_yx = sps_c_3_t*sps_w_2_t_2 + sps_v_1_t_2*sps_w_1_t_2
-        sps_d_alpha_2_yy = sps_c_3_t*sps_w_2_t_3 - sps_v_1_t_2*sps_w_1_t_3
-        # (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        sps_d_mu_3_t = (
-        sps_J_group_3_xx*sps_d_alpha_2_xx + sps_J_group_3_xy*sps_d_alpha_2_yx +
-            sps_J_group_3_xz*sps_d_alpha_1_zx
-        )
-        sps_d_mu_3_t_2 = (
-        sps_J_group_3_xy*sps_d_alpha_2_xy + sps_J_group_3_yy*sps_d_alpha_2_yy -
-            sps_J_group_3_yz*sps_d_alpha_1_zy
-        )
-        sps_d_mu_3_xy = (
-        sps_J_group_3_xx*sps_d_alpha_2_xy + sps_J_group_3_xy*sps_d_alpha_2_yy - sps_h_4_x -
-            sps_J_group_3_xz*sps_d_alpha_1_zy
-        )
-        sps_d_mu_3_yx = (
-        sps_h_4_x + sps_J_group_3_xy*sps_d_alpha_2_xx + sps_J_group_3_yy*sps_d_alpha_2_yx +
-            sps_J_group_3_yz*sps_d_alpha_1_zx
-        )
-        sps_d_mu_3_zx = (
-        sps_J_group_3_xz*sps_d_alpha_2_xx + sps_J_group_3_yz*sps_d_alpha_2_yx +
-            sps_J_group_3_zz*sps_d_alpha_1_zx - sps_h_4_z
-        )
-        sps_d_mu_3_zy = (
-        sps_h_4_y + sps_J_group_3_xz*sps_d_alpha_2_xy + sps_J_group_3_yz*sps_d_alpha_2_yy -
-            sps_J_group_3_zz*sps_d_alpha_1_zy
-        )
-        # (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        sps_d_Gamma_2_y = sps_d_mu_3_xy*sps_s_3 - sps_c_3_t*sps_d_mu_3_t_2
-        sps_d_Gamma_2_z = sps_c_3_t*sps_h_4_y + sps_h_4_z*sps_s_3
-        # (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        sps_d_Gamma_1_y = (
-        sps_d_mu_3_t_2*sps_v_1_t_2 + sps_d_mu_3_xy*sps_v_1_t + sps_d_mu_3_zy*sps_s_2
-        )
-        sps_d_Gamma_1_z = sps_h_4_z*sps_v_1_t - sps_h_4_y*sps_v_1_t_2
-        # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        sps_d_G_xz = sps_d_Gamma_1_z*sps_w_1_t_2 - sps_d_Gamma_2_z*sps_w_2_t_2
-        sps_d_G_yz = -sps_d_Gamma_1_z*sps_w_1_t_3 - sps_d_Gamma_2_z*sps_w_2_t_3
-        # (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        sps_d_c_xx = (
-        sps_d_alpha_1_zx*sps_h_4_z + sps_w_2_t_2*(sps_d_mu_3_t*sps_s_3 - sps_c_3_t*sps_d_mu_3_yx)
-            - sps_d_alpha_2_yx*sps_h_4_x - sps_w_1_t_2*(sps_d_mu_3_t*sps_v_1_t +
-            sps_d_mu_3_yx*sps_v_1_t_2 + sps_d_mu_3_zx*sps_s_2)
-        )
-        sps_d_c_xy = (
-        sps_d_Gamma_2_y*sps_w_2_t_2 - sps_d_Gamma_1_y*sps_w_1_t_2 - sps_d_alpha_1_zy*sps_h_4_z -
-            sps_d_alpha_2_yy*sps_h_4_x
-        )
-        sps_d_c_yy = (
-        sps_d_Gamma_1_y*sps_w_1_t_3 + sps_d_Gamma_2_y*sps_w_2_t_3 + sps_d_alpha_1_zy*sps_h_4_y +
-            sps_d_alpha_2_xy*sps_h_4_x
-        )
-        # (sps-Q) inertia of the leg at the connection point, without the mass gathered there
-        sps_Q_t = 0.5*sps_d_c_xx
-        sps_Q_t_2 = 0.5*sps_d_c_yy
-        sps_Q_t_3 = (
-        axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_in_base_x*sps_d_c_xy -
-            sps_axis_z_x*sps_d_G_xz
-        )
-        sps_Q_t_4 = (
-        axis_x_sps_axes3_y*sps_Q_t + axis_y_sps_axes3_in_base_y*sps_d_c_xy -
-            sps_axis_z_y*sps_d_G_xz
-        )
-        sps_Q_t_5 = (
-        axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_in_base_z*sps_d_c_xy -
-            sps_axis_z_z*sps_d_G_xz
-        )
-        sps_Q_t_6 = axis_y_sps_axes3_in_base_x*sps_Q_t_2 - sps_axis_z_x*sps_d_G_yz
-        sps_Q_t_7 = axis_y_sps_axes3_in_base_y*sps_Q_t_2 - sps_axis_z_y*sps_d_G_yz
-        sps_Q_t_8 = axis_y_sps_axes3_in_base_z*sps_Q_t_2 - sps_axis_z_z*sps_d_G_yz
-        sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 + axis_y_sps_axes3_in_base_x*sps_Q_t_6
-        sps_Q_t_10 = 2.0*sps_Q_t_9
-        sps_Q_t_11 = (
-        axis_x_sps_axes3_x*sps_Q_t_4 + axis_x_sps_axes3_y*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_7 + axis_y_sps_axes3_in_base_y*sps_Q_t_6
-        )
-        sps_Q_t_12 = (
-        axis_x_sps_axes3_x*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_6
-        )
-        sps_Q_t_13 = axis_x_sps_axes3_y*sps_Q_t_4 + axis_y_sps_axes3_in_base_y*sps_Q_t_7
-        sps_Q_t_14 = 2.0*sps_Q_t_13
-        sps_Q_t_15 = (
-        axis_x_sps_axes3_y*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_4 +
-            axis_y_sps_axes3_in_base_y*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_7
-        )
-        sps_Q_t_16 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_in_base_z*sps_Q_t_8
-        sps_Q_t_17 = 2.0*sps_Q_t_16
-        # (M_ta) coupling block of M
-        sps_M_ta_t = sps_Q_t_11*sps_q_in_base_z
-        sps_M_ta_t_2 = sps_Q_t_12*sps_q_in_base_y
-        sps_M_ta_t_3 = sps_M_ta_t - sps_M_ta_t_2
-        sps_M_ta_t_4 = sps_Q_t_10*sps_q_in_base_z - sps_Q_t_12*sps_q_in_base_x
-        sps_M_ta_t_5 = sps_Q_t_10*sps_q_in_base_y - sps_Q_t_11*sps_q_in_base_x
-        sps_M_ta_t_6 = sps_Q_t_14*sps_q_in_base_z - sps_Q_t_15*sps_q_in_base_y
-        sps_M_ta_t_7 = sps_Q_t_15*sps_q_in_base_x
-        sps_M_ta_t_8 = sps_M_ta_t - sps_M_ta_t_7
-        sps_M_ta_t_9 = sps_Q_t_11*sps_q_in_base_y - sps_Q_t_14*sps_q_in_base_x
-        sps_M_ta_t_10 = sps_Q_t_15*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_y
-        sps_M_ta_t_11 = sps_Q_t_12*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_x
-        sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2
-        # (M_aa) rotational block of M
-        sps_M_aa_t = sps_M_ta_t_6*sps_q_in_base_z - sps_M_ta_t_10*sps_q_in_base_y
-        sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_y
-        sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_in_base_y + sps_M_ta_t_9*sps_q_in_base_z
-        sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_x
-        sps_M_aa_t_5 = sps_M_ta_t_12*sps_q_in_base_x + sps_M_ta_t_5*sps_q_in_base_z
-        sps_M_aa_t_6 = sps_M_ta_t_5*sps_q_in_base_y - sps_M_ta_t_9*sps_q_in_base_x
+        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
         # (sps-S_dot) velocity of the connection point
-        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
-        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
-        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
+        sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
+        sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x
         sps_S_dot_x = sps_S_dot_t + t_dot_x
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
+        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
+        sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
+        sps_v_2_t = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        inv_sps_w_1_t = 1.0/sps_w_1_t
+        sps_w_1_in_axes3_x = inv_sps_w_1_t*sps_v_2_t
+        sps_w_1_in_axes3_y = inv_sps_w_1_t*sps_v_2_in_axes3_x
+        # (sps-w_2) reciprocal vector 2
+        sps_w_2_in_axes3_x = inv_sps_w_1_t*sps_v_1_in_axes3_y
+        sps_w_2_t = inv_sps_w_1_t*sps_v_1_in_axes3_x
+        # (sps-w_4) reciprocal vector 3
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_tip_x = (
+        sps_S_dot_rest_t = sps_s_2*sps_s_3
+        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
+        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        axis_y_sps_axes3_x = (
+        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_xx
+        )
+        axis_y_sps_axes3_y = (
+        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_yx
+        )
+        axis_y_sps_axes3_z = (
+        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_zx
+        )
+        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
+        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
+        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
+        sps_S_dot_rest_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
             axis_x_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_dot_z
+        sps_S_dot_rest_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_dot_x + axis_y_sps_axes3_y*sps_S_dot_y +
+            axis_y_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_z = (
-        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
+        sps_S_dot_rest_in_axes3_z = (
+        sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
+        )
+        # (sps-qd_1) rate of joint 1
+        sps_qd_1 = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
         )
         # (sps-qd_2) rate of joint 2
-        sps_qd_1 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
-        )
-        sps_qd_2 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 + sps_S_dot_rest_tip_y*sps_v_1_t_3)
+        sps_qd_2_t = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_t = sps_qd_1*sps_s_2
-        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
+        sps_omega_1_t = sps_c_2_t*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
-        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
+        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_z = sps_omega_1_t + sps_yd_3
-        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3
-        sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3
-        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
+        # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
+        sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
+        sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
         # (sps-u_1) centripetal acceleration of the connection point
         sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
         sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
         sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
-        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y
-        sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y
-        # (sps-W_3) centripetal tensor of link 3
-        sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x
-        sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y
-        sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z
-        sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y
-        sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z
-        sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z
-        # (sps-bias) acceleration of the connection point at zero joint accelerations
-        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
-        sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz + sps_beta_3_y)
-        sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
-        # (sps-u_1) centripetal acceleration of the connection point
-        sps_u_1_tip_x = (
+        sps_u_1_in_axes3_x = (
         axis_x_sps_axes3_x*sps_u_1_x + axis_x_sps_axes3_y*sps_u_1_y + axis_x_sps_axes3_z*sps_u_1_z
         )
-        sps_u_1_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_u_1_x + axis_y_sps_axes3_in_base_y*sps_u_1_y +
-            axis_y_sps_axes3_in_base_z*sps_u_1_z
+        sps_u_1_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_u_1_x + axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z
+        )
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
+        sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
+        sps_bias_in_axes3_x = (
+        sps_bias_t*sps_omega_2_in_axes3_y + sps_root_2*(sps_W_3_in_axes3_xz +
+            sps_beta_3_in_axes3_y)
+        )
+        sps_bias_in_axes3_y = (
+        sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x) -
+            sps_bias_t*sps_omega_2_in_axes3_x
         )
         # (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        sps_rel_o_x = sps_u_1_tip_x - sps_bias_x
-        sps_rel_o_y = sps_u_1_tip_y - sps_bias_y
-        # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        sps_qdd_1_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_2_t_2 - sps_rel_o_y*sps_v_2_t)
-        sps_qdd_2_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_1_t_4 + sps_rel_o_y*sps_v_1_t_3)
-        # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        sps_alpha_2_o_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1_o*sps_s_2
-        sps_alpha_2_o_y = sps_zeta_2_y - sps_c_2*sps_qdd_1_o
-        # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        sps_alpha_3_o_x = sps_zeta_3_x - sps_alpha_2_o_y*sps_c_3_t - sps_qdd_2_o*sps_s_3
-        sps_alpha_3_o_y = sps_c_3_t*sps_qdd_2_o - sps_zeta_3_y - sps_alpha_2_o_y*sps_s_3
-        # (sps-B_3_o) remainder of the acceleration tensor of link 3
-        sps_B_3_o_xy = sps_W_3_xy - sps_alpha_2_o_x
-        sps_B_3_o_xz = sps_W_3_xz + sps_alpha_3_o_y
-        sps_B_3_o_yx = sps_W_3_xy + sps_alpha_2_o_x
-        sps_B_3_o_yz = sps_W_3_yz - sps_alpha_3_o_x
-        sps_B_3_o_zx = sps_W_3_xz - sps_alpha_3_o_y
-        sps_B_3_o_zy = sps_W_3_yz + sps_alpha_3_o_x
-        # (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
-        sps_phi_4_o_z = (
-        sps_B_3_o_zx*sps_h_4_y + sps_B_3_o_zy*sps_h_4_z - sps_h_4_x*(sps_W_3_t + sps_W_3_t_2)
+        sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - sps_bias_in_axes3_x
+        sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - sps_bias_in_axes3_y
+        # (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        sps_qdd_1_o = (
+        inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t + sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x)
         )
-        # (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        sps_g_tip_x = (
+        # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        sps_qdd_2_o = (
+        -inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y)
+        )
+        # (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        sps_d_alpha_1_in_axes3_zx = sps_s_2*sps_w_1_in_axes3_x
+        sps_d_alpha_1_in_axes3_zy = sps_s_2*sps_w_1_in_axes3_y
+        # (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2
+        sps_d_alpha_2_in_axes3_xx = (
+        sps_e_1_in_axes3_x*sps_w_1_in_axes3_x + sps_s_3*sps_w_2_in_axes3_x
+        )
+        sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y - sps_s_3*sps_w_2_t
+        sps_d_alpha_2_in_axes3_yx = (
+        sps_c_3*sps_w_2_in_axes3_x + sps_e_1_in_axes3_y*sps_w_1_in_axes3_x
+        )
+        sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y - sps_c_3*sps_w_2_t
+        # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        sps_alpha_2_o_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1_o*sps_s_2
+        sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1_o
+        # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        sps_alpha_3_o_in_axes3_x = (
+        sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_y*sps_c_3 + sps_qdd_2_o*sps_s_3
+        )
+        sps_alpha_3_o_in_axes3_y = (
+        sps_zeta_3_in_axes3_y + sps_c_3*sps_qdd_2_o - sps_alpha_2_o_in_axes2_y*sps_s_3
+        )
+        # (sps-B_3_o) remainder of the acceleration tensor of link 3
+        sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_x
+        sps_B_3_o_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y
+        sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_x
+        sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x
+        sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y
+        sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x
+        # (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        sps_g_in_axes3_x = (
         axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
-        sps_g_tip_y = (
-        axis_y_sps_axes3_in_base_x*gravity_x + axis_y_sps_axes3_in_base_y*gravity_y +
-            axis_y_sps_axes3_in_base_z*gravity_z
+        sps_g_in_axes3_y = (
+        axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y + axis_y_sps_axes3_z*gravity_z
         )
-        sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y + gravity_z*sps_axis_z_z
-        # (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        sps_acc_4_o_x = sps_u_1_tip_x - sps_g_tip_x
-        sps_acc_4_o_y = sps_u_1_tip_y - sps_g_tip_y
-        sps_acc_4_o_z = (
-        sps_axis_z_x*sps_u_1_x + sps_axis_z_y*sps_u_1_y + sps_axis_z_z*sps_u_1_z - sps_g_tip_z
+        sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y + gravity_z*sps_w_4_z
+        sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - sps_g_in_axes3_x
+        sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - sps_g_in_axes3_y
+        sps_acc_4_o_in_axes3_z = (
+        sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y + sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z
+        )
+        # (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
+        sps_phi_4_o_in_axes3_z = (
+        sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y + sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z -
+            sps_h_4_in_spec3_x*(sps_phi_4_o_t + sps_phi_4_o_t_2)
+        )
+        # (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+        sps_d_mu_3_in_axes3_xx = (
+        sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zx
+        )
+        sps_d_mu_3_in_axes3_yy = (
+        sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zy
+        )
+        sps_d_mu_3_in_axes3_xy = (
+        sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zy - sps_h_4_in_spec3_x
+        )
+        sps_d_mu_3_in_axes3_yx = (
+        sps_h_4_in_spec3_x + sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zx
+        )
+        sps_d_mu_3_in_axes3_zx = (
+        sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zx - sps_h_4_in_spec3_z
+        )
+        sps_d_mu_3_in_axes3_zy = (
+        sps_h_4_in_spec3_y + sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy
         )
         # (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        sps_mu_3_o_x = (
-        sps_B_3_o_yx*sps_J_group_3_xz + sps_B_3_o_zy*sps_Sigma_3_yy +
-            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_o_z*sps_h_4_z +
-            sps_g_tip_y*sps_h_3_x - sps_B_3_o_yz*sps_Sigma_3_zz - sps_B_3_o_zx*sps_J_group_3_xy -
-            sps_acc_4_o_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z
+        sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_o_in_axes3_x = (
+        sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
+            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + sps_g_in_axes3_y*sps_h_3_in_spec3_x -
+            sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z
         )
-        sps_mu_3_o_y = (
-        sps_B_3_o_xz*sps_Sigma_3_zz + sps_B_3_o_zy*sps_J_group_3_xy + sps_acc_4_o_x*sps_h_4_x +
-            sps_g_tip_z*sps_h_3_y - sps_B_3_o_xy*sps_J_group_3_yz - sps_B_3_o_zx*sps_Sigma_3_xx -
-            sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) - sps_acc_4_o_z*sps_h_4_y -
-            sps_g_tip_x*sps_h_3_x
+        sps_mu_3_o_in_axes3_y = (
+        sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
+            sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
+            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - sps_g_in_axes3_x*sps_h_3_in_spec3_x
         )
-        sps_mu_3_o_z = (
-        sps_B_3_o_xz*sps_J_group_3_yz + sps_B_3_o_yx*sps_Sigma_3_xx + sps_J_group_3_xy*(sps_W_3_t
-            - sps_W_3_t_2) + sps_acc_4_o_y*sps_h_4_y + sps_g_tip_x*sps_h_3_z -
-            sps_B_3_o_xy*sps_Sigma_3_yy - sps_B_3_o_yz*sps_J_group_3_xz - sps_acc_4_o_x*sps_h_4_z
-            - sps_g_tip_y*sps_h_3_y
+        sps_mu_3_o_in_axes3_z = (
+        sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
+            sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
+            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + sps_g_in_axes3_x*sps_h_3_in_spec3_z -
+            sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+            sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
-        sps_mu_3_o_r0_y = sps_mu_3_o_x*sps_s_3 - sps_c_3_t*sps_mu_3_o_y
+        sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_x*sps_s_3
+        # (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_yy + sps_d_mu_3_in_axes3_xy*sps_s_3
+        sps_d_Gamma_2_in_axes3_z = sps_h_4_in_spec3_z*sps_s_3 - sps_c_3*sps_h_4_in_spec3_y
+        # (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        sps_d_Gamma_1_in_axes3_y = (
+        sps_d_mu_3_in_axes3_xy*sps_e_1_in_axes3_x + sps_d_mu_3_in_axes3_yy*sps_e_1_in_axes3_y +
+            sps_d_mu_3_in_axes3_zy*sps_s_2
+        )
+        sps_d_Gamma_1_in_axes3_z = (
+        sps_e_1_in_axes3_x*sps_h_4_in_spec3_z - sps_e_1_in_axes3_y*sps_h_4_in_spec3_y
+        )
         # (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        sps_Gamma_1_o = sps_mu_3_o_x*sps_v_1_t + sps_mu_3_o_y*sps_v_1_t_2 + sps_mu_3_o_z*sps_s_2
+        sps_Gamma_1_o = (
+        sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y +
+            sps_mu_3_o_in_axes3_z*sps_s_2
+        )
+        # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        sps_d_G_in_axes3_xz = (
+        sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x + sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x
+        )
+        sps_d_G_in_axes3_yz = (
+        sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y - sps_d_Gamma_2_in_axes3_z*sps_w_2_t
+        )
+        # (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        sps_d_c_in_axes3_xx = (
+        sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
+            sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
+            sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*sps_e_1_in_axes3_x +
+            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_s_2) -
+            sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_yx + sps_d_mu_3_in_axes3_xx*sps_s_3)
+        )
+        sps_d_c_in_axes3_xy = (
+        sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z - sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x
+            - sps_d_Gamma_2_in_axes3_y*sps_w_2_in_axes3_x -
+            sps_d_alpha_2_in_axes3_yy*sps_h_4_in_spec3_x
+        )
+        sps_d_c_in_axes3_yy = (
+        sps_d_Gamma_2_in_axes3_y*sps_w_2_t + sps_d_alpha_2_in_axes3_xy*sps_h_4_in_spec3_x -
+            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
+            sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y
+        )
         # (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        sps_c_o_x = (
-        sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) - inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t_2 -
-            sps_mu_3_o_r0_y*sps_v_1_t_4) - sps_B_3_o_xy*sps_h_4_z - sps_B_3_o_xz*sps_h_4_x
+        sps_c_o_in_axes3_x = (
+        sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
+            inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
+            sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x
         )
-        sps_c_o_y = (
-        inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_r0_y*sps_v_1_t_3) +
-            sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) - sps_B_3_o_yx*sps_h_4_y - sps_B_3_o_yz*sps_h_4_x
+        sps_c_o_in_axes3_y = (
+        inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1_o*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t + sps_phi_4_o_t)
+            - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x
         )
+        # (sps-Q) inertia of the leg at the connection point, without the mass gathered there
+        sps_Q_t = 0.5*sps_d_c_in_axes3_xx
+        sps_Q_t_2 = 0.5*sps_d_c_in_axes3_yy
+        sps_Q_t_3 = (
+        axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_x*sps_d_c_in_axes3_xy -
+            sps_d_G_in_axes3_xz*sps_w_4_x
+        )
+        sps_Q_t_4 = (
+        sps_d_G_in_axes3_xz*sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t -
+            axis_y_sps_axes3_y*sps_d_c_in_axes3_xy
+        )
+        sps_Q_t_5 = (
+        axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_z*sps_d_c_in_axes3_xy -
+            sps_d_G_in_axes3_xz*sps_w_4_z
+        )
+        sps_Q_t_6 = sps_d_G_in_axes3_yz*sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_2
+        sps_Q_t_7 = axis_y_sps_axes3_y*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_y
+        sps_Q_t_8 = axis_y_sps_axes3_z*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_z
+        sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_6
+        sps_Q_xx = -2.0*sps_Q_t_9
+        sps_Q_xy = (
+        axis_x_sps_axes3_x*sps_Q_t_4 + axis_y_sps_axes3_y*sps_Q_t_6 - axis_x_sps_axes3_y*sps_Q_t_3
+            - axis_y_sps_axes3_x*sps_Q_t_7
+        )
+        sps_Q_xz = (
+        axis_y_sps_axes3_z*sps_Q_t_6 - axis_x_sps_axes3_x*sps_Q_t_5 - axis_x_sps_axes3_z*sps_Q_t_3
+            - axis_y_sps_axes3_x*sps_Q_t_8
+        )
+        sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_4
+        sps_Q_yy = -2.0*sps_Q_t_10
+        sps_Q_yz = (
+        axis_x_sps_axes3_z*sps_Q_t_4 - axis_x_sps_axes3_y*sps_Q_t_5 - axis_y_sps_axes3_y*sps_Q_t_8
+            - axis_y_sps_axes3_z*sps_Q_t_7
+        )
+        sps_Q_t_11 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_z*sps_Q_t_8
+        sps_Q_zz = -2.0*sps_Q_t_11
         # (sps-U) velocity and gravity terms of the leg force
-        sps_U_in_base_x = (
-        sps_axis_z_x*sps_phi_4_o_z - axis_x_sps_axes3_x*sps_c_o_x -
-            axis_y_sps_axes3_in_base_x*sps_c_o_y
+        sps_U_x = (
+        sps_phi_4_o_in_axes3_z*sps_w_4_x - axis_x_sps_axes3_x*sps_c_o_in_axes3_x -
+            axis_y_sps_axes3_x*sps_c_o_in_axes3_y
         )
-        sps_U_in_base_y = (
-        sps_axis_z_y*sps_phi_4_o_z - axis_x_sps_axes3_y*sps_c_o_x -
-            axis_y_sps_axes3_in_base_y*sps_c_o_y
+        sps_U_y = (
+        sps_phi_4_o_in_axes3_z*sps_w_4_y - axis_x_sps_axes3_y*sps_c_o_in_axes3_x -
+            axis_y_sps_axes3_y*sps_c_o_in_axes3_y
         )
-        sps_U_in_base_z = (
-        sps_axis_z_z*sps_phi_4_o_z - axis_x_sps_axes3_z*sps_c_o_x -
-            axis_y_sps_axes3_in_base_z*sps_c_o_y
+        sps_U_z = (
+        sps_phi_4_o_in_axes3_z*sps_w_4_z - axis_x_sps_axes3_z*sps_c_o_in_axes3_x -
+            axis_y_sps_axes3_z*sps_c_o_in_axes3_y
         )
-        # (Z_a) rotational part of Z
-        sps_Z_a_t = sps_U_in_base_z*sps_q_in_base_y - sps_U_in_base_y*sps_q_in_base_z
-        sps_Z_a_t_2 = sps_U_in_base_x*sps_q_in_base_z - sps_U_in_base_z*sps_q_in_base_x
-        sps_Z_a_t_3 = sps_U_in_base_y*sps_q_in_base_x - sps_U_in_base_x*sps_q_in_base_y
         # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
-        sps_d_P_3_in_base_x = (
-        axis_x_sps_axes3_x*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_x*sps_d_mu_3_zy
+        sps_d_P_3_x = (
+        axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy
         )
-        sps_d_P_3_in_base_y = (
-        axis_x_sps_axes3_y*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_y*sps_d_mu_3_zy
+        sps_d_P_3_y = (
+        axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_y*sps_d_mu_3_in_axes3_zy
         )
-        sps_d_P_3_in_base_z = (
-        axis_x_sps_axes3_z*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_z*sps_d_mu_3_zy
+        sps_d_P_3_z = (
+        axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy
         )
+        # (M_ta) coupling block of M
+        sps_M_ta_t = -sps_Q_xy*sps_q_z
+        sps_M_ta_t_2 = sps_Q_xz*sps_q_y
+        sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2
+        sps_M_ta_t_4 = sps_Q_xx*sps_q_z - sps_Q_xz*sps_q_x
+        sps_M_ta_t_5 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y
+        sps_M_ta_t_6 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z
+        sps_M_ta_t_7 = sps_Q_yz*sps_q_x
+        sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7
+        sps_M_ta_t_9 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y
+        sps_M_ta_t_10 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z
+        sps_M_ta_t_11 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x
+        sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2
+        # (M_aa) rotational block of M
+        sps_M_aa_t = sps_M_ta_t_10*sps_q_y - sps_M_ta_t_6*sps_q_z
+        sps_M_aa_t_2 = sps_M_ta_t_11*sps_q_y + sps_M_ta_t_8*sps_q_z
+        sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_y - sps_M_ta_t_9*sps_q_z
+        sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_z - sps_M_ta_t_11*sps_q_x
+        sps_M_aa_t_5 = sps_M_ta_t_5*sps_q_z - sps_M_ta_t_12*sps_q_x
+        sps_M_aa_t_6 = sps_M_ta_t_9*sps_q_x - sps_M_ta_t_5*sps_q_y
+        # (Z_a) rotational part of Z
+        sps_Z_a_t = sps_U_z*sps_q_y - sps_U_y*sps_q_z
+        sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x
+        sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y
         # (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform
-        sps_M_ya_3_x = sps_d_P_3_in_base_z*sps_q_in_base_y - sps_d_P_3_in_base_y*sps_q_in_base_z
-        sps_M_ya_3_y = sps_d_P_3_in_base_x*sps_q_in_base_z - sps_d_P_3_in_base_z*sps_q_in_base_x
-        sps_M_ya_3_z = sps_d_P_3_in_base_y*sps_q_in_base_x - sps_d_P_3_in_base_x*sps_q_in_base_y
+        sps_M_ya_3_x = sps_d_P_3_z*sps_q_y - sps_d_P_3_y*sps_q_z
+        sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x
+        sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y
         # (sps-H_a_4) moment of the column's unit force about the platform origin
-        sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z
-        sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x
-        sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y
+        sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y
+        sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
+        sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        sps_Q_t_10, sps_Q_t_11, sps_Q_t_12, sps_Q_t_14, sps_Q_t_15, sps_Q_t_17, sps_M_ta_t_3,
+        sps_Q_xx, sps_Q_xy, sps_Q_xz, sps_Q_yy, sps_Q_yz, sps_Q_zz, sps_M_ta_t_3,
             sps_M_ta_t_4, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_8, sps_M_ta_t_9,
             sps_M_ta_t_10, sps_M_ta_t_11, sps_M_ta_t_12, sps_M_aa_t, sps_M_aa_t_2,
-            sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6, sps_U_in_base_x,
-            sps_U_in_base_y, sps_U_in_base_z, sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3,
+            sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6, sps_U_x, sps_U_y, sps_U_z,
+            sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3,
         ))
-        out_Z[_Z_sps[0][leg]] = sps_mu_3_o_z
-        out_M[_M_sps[0][leg]] = sps_d_P_3_in_base_x
-        out_M[_M_sps[1][leg]] = sps_d_P_3_in_base_x
-        out_M[_M_sps[2][leg]] = sps_d_P_3_in_base_y
-        out_M[_M_sps[3][leg]] = sps_d_P_3_in_base_y
-        out_M[_M_sps[4][leg]] = sps_d_P_3_in_base_z
-        out_M[_M_sps[5][leg]] = sps_d_P_3_in_base_z
+        # (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        out_Z[_Z_sps[0][leg]] = sps_mu_3_o_in_axes3_z
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        out_M[_M_sps[0][leg]] = sps_d_P_3_x
+        out_M[_M_sps[1][leg]] = sps_d_P_3_x
+        out_M[_M_sps[2][leg]] = sps_d_P_3_y
+        out_M[_M_sps[3][leg]] = sps_d_P_3_y
+        out_M[_M_sps[4][leg]] = sps_d_P_3_z
+        out_M[_M_sps[5][leg]] = sps_d_P_3_z
+        # (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform
         out_M[_M_sps[6][leg]] = sps_M_ya_3_x
         out_M[_M_sps[7][leg]] = sps_M_ya_3_x
         out_M[_M_sps[8][leg]] = sps_M_ya_3_y
         out_M[_M_sps[9][leg]] = sps_M_ya_3_y
         out_M[_M_sps[10][leg]] = sps_M_ya_3_z
         out_M[_M_sps[11][leg]] = sps_M_ya_3_z
-        out_M[_M_sps[12][leg]] = sps_J_group_3_zz
-        out_H[_H_sps[0][leg]] = sps_axis_z_x
-        out_H[_H_sps[1][leg]] = sps_axis_z_y
-        out_H[_H_sps[2][leg]] = sps_axis_z_z
+        # (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        out_M[_M_sps[12][leg]] = sps_J_group_3_in_axes3_zz
+        # (sps-w_4) reciprocal vector 3
+        out_H[_H_sps[0][leg]] = sps_w_4_x
+        out_H[_H_sps[1][leg]] = sps_w_4_y
+        out_H[_H_sps[2][leg]] = sps_w_4_z
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
         out_H[_H_sps[3][leg]] = sps_H_a_4_x
         out_H[_H_sps[4][leg]] = sps_H_a_4_y
         out_H[_H_sps[5][leg]] = sps_H_a_4_z
     (
-    total_sps_xx, total_sps_xy, total_sps_xz, total_sps_yy, total_sps_yz, total_sps_zz,
-        total_sps_xx_2, total_sps_xy_2, total_sps_xz_2, total_sps_yx, total_sps_yy_2,
-        total_sps_yz_2, total_sps_zx, total_sps_zy, total_sps_zz_2, total_sps_xx_3,
-        total_sps_xy_3, total_sps_xz_3, total_sps_yy_3, total_sps_yz_3, total_sps_zz_3,
-        total_sps_x, total_sps_y, total_sps_z, total_sps_x_2, total_sps_y_2, total_sps_z_2,
+    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
+        M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
+        M_aa_sps_xx, M_aa_sps_xy, M_aa_sps_xz, M_aa_sps_yy, M_aa_sps_yz, M_aa_sps_zz, Z_t_sps_x,
+        Z_t_sps_y, Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_sps_xx
-    M_tt_yy = m_star - total_sps_yy
-    M_tt_zz = m_star - total_sps_zz
+    M_tt_xx = M_tt_sps_xx + m_star
+    M_tt_yy = M_tt_sps_yy + m_star
+    M_tt_zz = M_tt_sps_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_sps_xy_2
-    M_ta_xz = total_sps_xz_2 - h_star_in_base_y
-    M_ta_yx = total_sps_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_sps_yz_2
-    M_ta_zx = h_star_in_base_y + total_sps_zx
-    M_ta_zy = -h_star_in_base_x - total_sps_zy
+    M_ta_xy = M_ta_sps_xy + h_star_z
+    M_ta_xz = M_ta_sps_xz - h_star_y
+    M_ta_yx = M_ta_sps_yx - h_star_z
+    M_ta_yz = M_ta_sps_yz + h_star_x
+    M_ta_zx = M_ta_sps_zx + h_star_y
+    M_ta_zy = M_ta_sps_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_sps_xx_3
-    M_aa_xy = J_star_t_9 + total_sps_xy_3
-    M_aa_xz = J_star_t_10 - total_sps_xz_3
-    M_aa_yy = J_star_t_13 - total_sps_yy_3
-    M_aa_yz = J_star_t_15 + total_sps_yz_3
-    M_aa_zz = J_star_t_17 - total_sps_zz_3
+    M_aa_xx = J_star_xx + M_aa_sps_xx
+    M_aa_xy = J_star_xy + M_aa_sps_xy
+    M_aa_xz = J_star_xz + M_aa_sps_xz
+    M_aa_yy = J_star_yy + M_aa_sps_yy
+    M_aa_yz = J_star_yz + M_aa_sps_yz
+    M_aa_zz = J_star_zz + M_aa_sps_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_sps_x
-    Z_t_y = Z_p_y + total_sps_y
-    Z_t_z = Z_p_z + total_sps_z
+    Z_t_x = Z_p_x + Z_t_sps_x
+    Z_t_y = Z_p_y + Z_t_sps_y
+    Z_t_z = Z_p_z + Z_t_sps_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_sps_x_2
-    Z_a_y = Z_q_in_base_y + total_sps_y_2
-    Z_a_z = Z_q_in_base_z + total_sps_z_2
+    Z_a_x = Z_a_sps_x + Z_q_x
+    Z_a_y = Z_a_sps_y + Z_q_y
+    Z_a_z = Z_a_sps_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_sps_xy
-    out_M[12] = -total_sps_xy
-    out_M[2] = -total_sps_xz
-    out_M[24] = -total_sps_xz
+    out_M[1] = M_tt_xy
+    out_M[12] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[24] = M_tt_xz
     out_M[13] = M_tt_yy
-    out_M[14] = -total_sps_yz
-    out_M[25] = -total_sps_yz
+    out_M[14] = M_tt_yz
+    out_M[25] = M_tt_yz
     out_M[26] = M_tt_zz
-    out_M[3] = total_sps_xx_2
-    out_M[36] = total_sps_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[36] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[48] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[60] = M_ta_xz
     out_M[15] = M_ta_yx
     out_M[37] = M_ta_yx
-    out_M[16] = -total_sps_yy_2
-    out_M[49] = -total_sps_yy_2
+    out_M[16] = -M_ta_t
+    out_M[49] = -M_ta_t
     out_M[17] = M_ta_yz
     out_M[61] = M_ta_yz
     out_M[27] = M_ta_zx
     out_M[38] = M_ta_zx
     out_M[28] = M_ta_zy
     out_M[50] = M_ta_zy
-    out_M[29] = -total_sps_zz_2
-    out_M[62] = -total_sps_zz_2
+    out_M[29] = M_ta_zz
+    out_M[62] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[39] = M_aa_xx
     out_M[40] = M_aa_xy
     out_M[51] = M_aa_xy
@@ -1948,9 +2040,11 @@ def _run_dynamics(m, X, V):
     out_M[53] = M_aa_yz
     out_M[64] = M_aa_yz
     out_M[65] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -1964,8 +2058,9 @@ def _run_M(m, X):
     cos = m.cos
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2005,49 +2100,54 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        sps_J_group_3_xx, sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yy, sps_J_group_3_yz,
-            sps_J_group_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
-            sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
-            sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
-            sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_4_x, sps_h_4_y, sps_h_4_z,
+        sps_J_group_3_in_axes3_xx, sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz,
+            sps_J_group_3_in_axes3_yy, sps_J_group_3_in_axes3_yz, sps_J_group_3_in_axes3_zz,
+            sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z,
             sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -2060,276 +2160,291 @@ def _run_M(m, X):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = -inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_root_1
+        sps_c_2_t = inv_sps_root_2*sps_root_1
         # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_t
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
+        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_v_1_t = sps_c_2*sps_c_3_t
-        sps_v_1_t_2 = sps_c_2*sps_s_3
-        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
-        sps_v_1_t_4 = sps_root_2*sps_v_1_t
+        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
+        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
+        sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
         # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_t = sps_c_3_t*sps_root_2
-        sps_v_2_t_2 = sps_root_2*sps_s_3
+        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
+        sps_v_2_t = sps_root_2*sps_s_3
         # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
-        sps_w_1_t = sps_s_2*sps_s_3
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-w_1) reciprocal vector 1
-        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
-        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
-        axis_y_sps_axes3_in_base_x = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
-            sps_base_frame_xz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_y = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
-            sps_base_frame_yz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_z = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
-            sps_base_frame_zz*sps_v_1_t_2
-        )
-        axis_x_sps_axes3_x = (
-        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
-        )
-        axis_x_sps_axes3_y = (
-        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
-        )
-        axis_x_sps_axes3_z = (
-        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
-        )
+        sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        inv_sps_w_1_t = 1.0/sps_w_1_t
+        sps_w_1_in_axes3_x = inv_sps_w_1_t*sps_v_2_t
+        sps_w_1_in_axes3_y = inv_sps_w_1_t*sps_v_2_in_axes3_x
         # (sps-w_2) reciprocal vector 2
-        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
-        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
-        sps_w_2_t_2 = inv_sps_w_2_t_3*sps_v_1_t_4
-        sps_w_2_t_3 = inv_sps_w_2_t_3*sps_v_1_t_3
-        # (sps-w_1) reciprocal vector 1
-        sps_w_1_t_2 = inv_sps_w_2_t_3*sps_v_2_t_2
-        sps_w_1_t_3 = inv_sps_w_2_t_3*sps_v_2_t
+        sps_w_2_in_axes3_x = inv_sps_w_1_t*sps_v_1_in_axes3_y
+        sps_w_2_t = inv_sps_w_1_t*sps_v_1_in_axes3_x
+        # (sps-w_4) reciprocal vector 3
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        sps_d_alpha_1_zx = sps_s_2*sps_w_1_t_2
-        sps_d_alpha_1_zy = sps_s_2*sps_w_1_t_3
+        sps_d_alpha_1_in_axes3_zx = sps_s_2*sps_w_1_in_axes3_x
+        sps_d_alpha_1_in_axes3_zy = sps_s_2*sps_w_1_in_axes3_y
         # (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2
-        sps_d_alpha_2_xx = sps_v_1_t*sps_w_1_t_2 - sps_s_3*sps_w_2_t_2
-        sps_d_alpha_2_xy = -sps_s_3*sps_w_2_t_3 - sps_v_1_t*sps_w_1_t_3
-        sps_d_alpha_2_yx = sps_c_3_t*sps_w_2_t_2 + sps_v_1_t_2*sps_w_1_t_2
-        sps_d_alpha_2_yy = sps_c_3_t*sps_w_2_t_3 - sps_v_1_t_2*sps_w_1_t_3
+        sps_d_alpha_2_in_axes3_xx = (
+        sps_e_1_in_axes3_x*sps_w_1_in_axes3_x + sps_s_3*sps_w_2_in_axes3_x
+        )
+        sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y - sps_s_3*sps_w_2_t
+        sps_d_alpha_2_in_axes3_yx = (
+        sps_c_3*sps_w_2_in_axes3_x + sps_e_1_in_axes3_y*sps_w_1_in_axes3_x
+        )
+        sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y - sps_c_3*sps_w_2_t
         # (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        sps_d_mu_3_t = (
-        sps_J_group_3_xx*sps_d_alpha_2_xx + sps_J_group_3_xy*sps_d_alpha_2_yx +
-            sps_J_group_3_xz*sps_d_alpha_1_zx
+        sps_d_mu_3_in_axes3_xx = (
+        sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zx
         )
-        sps_d_mu_3_t_2 = (
-        sps_J_group_3_xy*sps_d_alpha_2_xy + sps_J_group_3_yy*sps_d_alpha_2_yy -
-            sps_J_group_3_yz*sps_d_alpha_1_zy
+        sps_d_mu_3_in_axes3_yy = (
+        sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zy
         )
-        sps_d_mu_3_xy = (
-        sps_J_group_3_xx*sps_d_alpha_2_xy + sps_J_group_3_xy*sps_d_alpha_2_yy - sps_h_4_x -
-            sps_J_group_3_xz*sps_d_alpha_1_zy
+        sps_d_mu_3_in_axes3_xy = (
+        sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zy - sps_h_4_in_spec3_x
         )
-        sps_d_mu_3_yx = (
-        sps_h_4_x + sps_J_group_3_xy*sps_d_alpha_2_xx + sps_J_group_3_yy*sps_d_alpha_2_yx +
-            sps_J_group_3_yz*sps_d_alpha_1_zx
+        sps_d_mu_3_in_axes3_yx = (
+        sps_h_4_in_spec3_x + sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zx
         )
-        sps_d_mu_3_zx = (
-        sps_J_group_3_xz*sps_d_alpha_2_xx + sps_J_group_3_yz*sps_d_alpha_2_yx +
-            sps_J_group_3_zz*sps_d_alpha_1_zx - sps_h_4_z
+        sps_d_mu_3_in_axes3_zx = (
+        sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xx +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yx +
+            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zx - sps_h_4_in_spec3_z
         )
-        sps_d_mu_3_zy = (
-        sps_h_4_y + sps_J_group_3_xz*sps_d_alpha_2_xy + sps_J_group_3_yz*sps_d_alpha_2_yy -
-            sps_J_group_3_zz*sps_d_alpha_1_zy
+        sps_d_mu_3_in_axes3_zy = (
+        sps_h_4_in_spec3_y + sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xy +
+            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yy +
+            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy
         )
         # (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        sps_d_Gamma_2_y = sps_d_mu_3_xy*sps_s_3 - sps_c_3_t*sps_d_mu_3_t_2
-        sps_d_Gamma_2_z = sps_c_3_t*sps_h_4_y + sps_h_4_z*sps_s_3
+        sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_yy + sps_d_mu_3_in_axes3_xy*sps_s_3
+        sps_d_Gamma_2_in_axes3_z = sps_h_4_in_spec3_z*sps_s_3 - sps_c_3*sps_h_4_in_spec3_y
         # (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        sps_d_Gamma_1_y = (
-        sps_d_mu_3_t_2*sps_v_1_t_2 + sps_d_mu_3_xy*sps_v_1_t + sps_d_mu_3_zy*sps_s_2
+        sps_d_Gamma_1_in_axes3_y = (
+        sps_d_mu_3_in_axes3_xy*sps_e_1_in_axes3_x + sps_d_mu_3_in_axes3_yy*sps_e_1_in_axes3_y +
+            sps_d_mu_3_in_axes3_zy*sps_s_2
         )
-        sps_d_Gamma_1_z = sps_h_4_z*sps_v_1_t - sps_h_4_y*sps_v_1_t_2
+        sps_d_Gamma_1_in_axes3_z = (
+        sps_e_1_in_axes3_x*sps_h_4_in_spec3_z - sps_e_1_in_axes3_y*sps_h_4_in_spec3_y
+        )
         # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        sps_d_G_xz = sps_d_Gamma_1_z*sps_w_1_t_2 - sps_d_Gamma_2_z*sps_w_2_t_2
-        sps_d_G_yz = -sps_d_Gamma_1_z*sps_w_1_t_3 - sps_d_Gamma_2_z*sps_w_2_t_3
+        sps_d_G_in_axes3_xz = (
+        sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x + sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x
+        )
+        sps_d_G_in_axes3_yz = (
+        sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y - sps_d_Gamma_2_in_axes3_z*sps_w_2_t
+        )
         # (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        sps_d_c_xx = (
-        sps_d_alpha_1_zx*sps_h_4_z + sps_w_2_t_2*(sps_d_mu_3_t*sps_s_3 - sps_c_3_t*sps_d_mu_3_yx)
-            - sps_d_alpha_2_yx*sps_h_4_x - sps_w_1_t_2*(sps_d_mu_3_t*sps_v_1_t +
-            sps_d_mu_3_yx*sps_v_1_t_2 + sps_d_mu_3_zx*sps_s_2)
+        sps_d_c_in_axes3_xx = (
+        sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
+            sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
+            sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*sps_e_1_in_axes3_x +
+            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_s_2) -
+            sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_yx + sps_d_mu_3_in_axes3_xx*sps_s_3)
         )
-        sps_d_c_xy = (
-        sps_d_Gamma_2_y*sps_w_2_t_2 - sps_d_Gamma_1_y*sps_w_1_t_2 - sps_d_alpha_1_zy*sps_h_4_z -
-            sps_d_alpha_2_yy*sps_h_4_x
+        sps_d_c_in_axes3_xy = (
+        sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z - sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x
+            - sps_d_Gamma_2_in_axes3_y*sps_w_2_in_axes3_x -
+            sps_d_alpha_2_in_axes3_yy*sps_h_4_in_spec3_x
         )
-        sps_d_c_yy = (
-        sps_d_Gamma_1_y*sps_w_1_t_3 + sps_d_Gamma_2_y*sps_w_2_t_3 + sps_d_alpha_1_zy*sps_h_4_y +
-            sps_d_alpha_2_xy*sps_h_4_x
+        sps_d_c_in_axes3_yy = (
+        sps_d_Gamma_2_in_axes3_y*sps_w_2_t + sps_d_alpha_2_in_axes3_xy*sps_h_4_in_spec3_x -
+            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
+            sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y
         )
         # (sps-Q) inertia of the leg at the connection point, without the mass gathered there
-        sps_Q_t = 0.5*sps_d_c_xx
-        sps_Q_t_2 = 0.5*sps_d_c_yy
-        sps_Q_t_3 = (
-        axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_in_base_x*sps_d_c_xy -
-            sps_axis_z_x*sps_d_G_xz
+        sps_Q_t = sps_s_2*sps_s_3
+        sps_Q_t_2 = sps_Q_t*sps_s_1 - sps_c_1*sps_c_3
+        sps_Q_t_3 = sps_Q_t*sps_c_1 + sps_c_3*sps_s_1
+        axis_y_sps_axes3_x = (
+        sps_Q_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
+            sps_Q_t_2*sps_base_frame_xx
         )
-        sps_Q_t_4 = (
-        axis_x_sps_axes3_y*sps_Q_t + axis_y_sps_axes3_in_base_y*sps_d_c_xy -
-            sps_axis_z_y*sps_d_G_xz
+        axis_y_sps_axes3_y = (
+        sps_Q_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
+            sps_Q_t_2*sps_base_frame_yx
         )
-        sps_Q_t_5 = (
-        axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_in_base_z*sps_d_c_xy -
-            sps_axis_z_z*sps_d_G_xz
+        axis_y_sps_axes3_z = (
+        sps_Q_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
+            sps_Q_t_2*sps_base_frame_zx
         )
-        sps_Q_t_6 = axis_y_sps_axes3_in_base_x*sps_Q_t_2 - sps_axis_z_x*sps_d_G_yz
-        sps_Q_t_7 = axis_y_sps_axes3_in_base_y*sps_Q_t_2 - sps_axis_z_y*sps_d_G_yz
-        sps_Q_t_8 = axis_y_sps_axes3_in_base_z*sps_Q_t_2 - sps_axis_z_z*sps_d_G_yz
-        sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 + axis_y_sps_axes3_in_base_x*sps_Q_t_6
-        sps_Q_t_10 = 2.0*sps_Q_t_9
-        sps_Q_t_11 = (
-        axis_x_sps_axes3_x*sps_Q_t_4 + axis_x_sps_axes3_y*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_7 + axis_y_sps_axes3_in_base_y*sps_Q_t_6
+        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
+        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
+        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
+        sps_Q_t_4 = 0.5*sps_d_c_in_axes3_xx
+        sps_Q_t_5 = 0.5*sps_d_c_in_axes3_yy
+        sps_Q_t_6 = (
+        axis_x_sps_axes3_x*sps_Q_t_4 + axis_y_sps_axes3_x*sps_d_c_in_axes3_xy -
+            sps_d_G_in_axes3_xz*sps_w_4_x
         )
-        sps_Q_t_12 = (
-        axis_x_sps_axes3_x*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_3 +
-            axis_y_sps_axes3_in_base_x*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_6
+        sps_Q_t_7 = (
+        sps_d_G_in_axes3_xz*sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t_4 -
+            axis_y_sps_axes3_y*sps_d_c_in_axes3_xy
         )
-        sps_Q_t_13 = axis_x_sps_axes3_y*sps_Q_t_4 + axis_y_sps_axes3_in_base_y*sps_Q_t_7
-        sps_Q_t_14 = 2.0*sps_Q_t_13
-        sps_Q_t_15 = (
-        axis_x_sps_axes3_y*sps_Q_t_5 + axis_x_sps_axes3_z*sps_Q_t_4 +
-            axis_y_sps_axes3_in_base_y*sps_Q_t_8 + axis_y_sps_axes3_in_base_z*sps_Q_t_7
+        sps_Q_t_8 = (
+        axis_x_sps_axes3_z*sps_Q_t_4 + axis_y_sps_axes3_z*sps_d_c_in_axes3_xy -
+            sps_d_G_in_axes3_xz*sps_w_4_z
         )
-        sps_Q_t_16 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_in_base_z*sps_Q_t_8
-        sps_Q_t_17 = 2.0*sps_Q_t_16
+        sps_Q_t_9 = sps_d_G_in_axes3_yz*sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_5
+        sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_5 - sps_d_G_in_axes3_yz*sps_w_4_y
+        sps_Q_t_11 = axis_y_sps_axes3_z*sps_Q_t_5 - sps_d_G_in_axes3_yz*sps_w_4_z
+        sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_9
+        sps_Q_xx = -2.0*sps_Q_t_12
+        sps_Q_xy = (
+        axis_x_sps_axes3_x*sps_Q_t_7 + axis_y_sps_axes3_y*sps_Q_t_9 - axis_x_sps_axes3_y*sps_Q_t_6
+            - axis_y_sps_axes3_x*sps_Q_t_10
+        )
+        sps_Q_xz = (
+        axis_y_sps_axes3_z*sps_Q_t_9 - axis_x_sps_axes3_x*sps_Q_t_8 - axis_x_sps_axes3_z*sps_Q_t_6
+            - axis_y_sps_axes3_x*sps_Q_t_11
+        )
+        sps_Q_t_13 = axis_y_sps_axes3_y*sps_Q_t_10 - axis_x_sps_axes3_y*sps_Q_t_7
+        sps_Q_yy = -2.0*sps_Q_t_13
+        sps_Q_yz = (
+        axis_x_sps_axes3_z*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_8 -
+            axis_y_sps_axes3_y*sps_Q_t_11 - axis_y_sps_axes3_z*sps_Q_t_10
+        )
+        sps_Q_t_14 = axis_x_sps_axes3_z*sps_Q_t_8 + axis_y_sps_axes3_z*sps_Q_t_11
+        sps_Q_zz = -2.0*sps_Q_t_14
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        sps_d_P_3_x = (
+        axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy
+        )
+        sps_d_P_3_y = (
+        axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_y*sps_d_mu_3_in_axes3_zy
+        )
+        sps_d_P_3_z = (
+        axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx + axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy
+        )
         # (M_ta) coupling block of M
-        sps_M_ta_t = sps_Q_t_11*sps_q_in_base_z
-        sps_M_ta_t_2 = sps_Q_t_12*sps_q_in_base_y
-        sps_M_ta_t_3 = sps_M_ta_t - sps_M_ta_t_2
-        sps_M_ta_t_4 = sps_Q_t_10*sps_q_in_base_z - sps_Q_t_12*sps_q_in_base_x
-        sps_M_ta_t_5 = sps_Q_t_10*sps_q_in_base_y - sps_Q_t_11*sps_q_in_base_x
-        sps_M_ta_t_6 = sps_Q_t_14*sps_q_in_base_z - sps_Q_t_15*sps_q_in_base_y
-        sps_M_ta_t_7 = sps_Q_t_15*sps_q_in_base_x
-        sps_M_ta_t_8 = sps_M_ta_t - sps_M_ta_t_7
-        sps_M_ta_t_9 = sps_Q_t_11*sps_q_in_base_y - sps_Q_t_14*sps_q_in_base_x
-        sps_M_ta_t_10 = sps_Q_t_15*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_y
-        sps_M_ta_t_11 = sps_Q_t_12*sps_q_in_base_z - sps_Q_t_17*sps_q_in_base_x
+        sps_M_ta_t = -sps_Q_xy*sps_q_z
+        sps_M_ta_t_2 = sps_Q_xz*sps_q_y
+        sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2
+        sps_M_ta_t_4 = sps_Q_xx*sps_q_z - sps_Q_xz*sps_q_x
+        sps_M_ta_t_5 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y
+        sps_M_ta_t_6 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z
+        sps_M_ta_t_7 = sps_Q_yz*sps_q_x
+        sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7
+        sps_M_ta_t_9 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y
+        sps_M_ta_t_10 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z
+        sps_M_ta_t_11 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x
         sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2
         # (M_aa) rotational block of M
-        sps_M_aa_t = sps_M_ta_t_6*sps_q_in_base_z - sps_M_ta_t_10*sps_q_in_base_y
-        sps_M_aa_t_2 = sps_M_ta_t_8*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_y
-        sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_in_base_y + sps_M_ta_t_9*sps_q_in_base_z
-        sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_in_base_z - sps_M_ta_t_11*sps_q_in_base_x
-        sps_M_aa_t_5 = sps_M_ta_t_12*sps_q_in_base_x + sps_M_ta_t_5*sps_q_in_base_z
-        sps_M_aa_t_6 = sps_M_ta_t_5*sps_q_in_base_y - sps_M_ta_t_9*sps_q_in_base_x
-        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
-        sps_d_P_3_in_base_x = (
-        axis_x_sps_axes3_x*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_x*sps_d_mu_3_zy
-        )
-        sps_d_P_3_in_base_y = (
-        axis_x_sps_axes3_y*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_y*sps_d_mu_3_zy
-        )
-        sps_d_P_3_in_base_z = (
-        axis_x_sps_axes3_z*sps_d_mu_3_zx + axis_y_sps_axes3_in_base_z*sps_d_mu_3_zy
-        )
+        sps_M_aa_t = sps_M_ta_t_10*sps_q_y - sps_M_ta_t_6*sps_q_z
+        sps_M_aa_t_2 = sps_M_ta_t_11*sps_q_y + sps_M_ta_t_8*sps_q_z
+        sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_y - sps_M_ta_t_9*sps_q_z
+        sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_z - sps_M_ta_t_11*sps_q_x
+        sps_M_aa_t_5 = sps_M_ta_t_5*sps_q_z - sps_M_ta_t_12*sps_q_x
+        sps_M_aa_t_6 = sps_M_ta_t_9*sps_q_x - sps_M_ta_t_5*sps_q_y
         # (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform
-        sps_M_ya_3_x = sps_d_P_3_in_base_z*sps_q_in_base_y - sps_d_P_3_in_base_y*sps_q_in_base_z
-        sps_M_ya_3_y = sps_d_P_3_in_base_x*sps_q_in_base_z - sps_d_P_3_in_base_z*sps_q_in_base_x
-        sps_M_ya_3_z = sps_d_P_3_in_base_y*sps_q_in_base_x - sps_d_P_3_in_base_x*sps_q_in_base_y
+        sps_M_ya_3_x = sps_d_P_3_z*sps_q_y - sps_d_P_3_y*sps_q_z
+        sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x
+        sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        sps_Q_t_10, sps_Q_t_11, sps_Q_t_12, sps_Q_t_14, sps_Q_t_15, sps_Q_t_17, sps_M_ta_t_3,
+        sps_Q_xx, sps_Q_xy, sps_Q_xz, sps_Q_yy, sps_Q_yz, sps_Q_zz, sps_M_ta_t_3,
             sps_M_ta_t_4, sps_M_ta_t_5, sps_M_ta_t_6, sps_M_ta_t_8, sps_M_ta_t_9,
             sps_M_ta_t_10, sps_M_ta_t_11, sps_M_ta_t_12, sps_M_aa_t, sps_M_aa_t_2,
             sps_M_aa_t_3, sps_M_aa_t_4, sps_M_aa_t_5, sps_M_aa_t_6,
         ))
-        out_M[_M_sps[0][leg]] = sps_d_P_3_in_base_x
-        out_M[_M_sps[1][leg]] = sps_d_P_3_in_base_x
-        out_M[_M_sps[2][leg]] = sps_d_P_3_in_base_y
-        out_M[_M_sps[3][leg]] = sps_d_P_3_in_base_y
-        out_M[_M_sps[4][leg]] = sps_d_P_3_in_base_z
-        out_M[_M_sps[5][leg]] = sps_d_P_3_in_base_z
+        # (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        out_M[_M_sps[0][leg]] = sps_d_P_3_x
+        out_M[_M_sps[1][leg]] = sps_d_P_3_x
+        out_M[_M_sps[2][leg]] = sps_d_P_3_y
+        out_M[_M_sps[3][leg]] = sps_d_P_3_y
+        out_M[_M_sps[4][leg]] = sps_d_P_3_z
+        out_M[_M_sps[5][leg]] = sps_d_P_3_z
+        # (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform
         out_M[_M_sps[6][leg]] = sps_M_ya_3_x
         out_M[_M_sps[7][leg]] = sps_M_ya_3_x
         out_M[_M_sps[8][leg]] = sps_M_ya_3_y
         out_M[_M_sps[9][leg]] = sps_M_ya_3_y
         out_M[_M_sps[10][leg]] = sps_M_ya_3_z
         out_M[_M_sps[11][leg]] = sps_M_ya_3_z
-        out_M[_M_sps[12][leg]] = sps_J_group_3_zz
+        # (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        out_M[_M_sps[12][leg]] = sps_J_group_3_in_axes3_zz
     (
-    total_sps_xx, total_sps_xy, total_sps_xz, total_sps_yy, total_sps_yz, total_sps_zz,
-        total_sps_xx_2, total_sps_xy_2, total_sps_xz_2, total_sps_yx, total_sps_yy_2,
-        total_sps_yz_2, total_sps_zx, total_sps_zy, total_sps_zz_2, total_sps_xx_3,
-        total_sps_xy_3, total_sps_xz_3, total_sps_yy_3, total_sps_yz_3, total_sps_zz_3,
+    M_tt_sps_xx, M_tt_xy, M_tt_xz, M_tt_sps_yy, M_tt_yz, M_tt_sps_zz, M_ta_xx, M_ta_sps_xy,
+        M_ta_sps_xz, M_ta_sps_yx, M_ta_t, M_ta_sps_yz, M_ta_sps_zx, M_ta_sps_zy, M_ta_zz,
+        M_aa_sps_xx, M_aa_sps_xy, M_aa_sps_xz, M_aa_sps_yy, M_aa_sps_yz, M_aa_sps_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_sps_xx
-    M_tt_yy = m_star - total_sps_yy
-    M_tt_zz = m_star - total_sps_zz
+    M_tt_xx = M_tt_sps_xx + m_star
+    M_tt_yy = M_tt_sps_yy + m_star
+    M_tt_zz = M_tt_sps_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_sps_xy_2
-    M_ta_xz = total_sps_xz_2 - h_star_in_base_y
-    M_ta_yx = total_sps_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_sps_yz_2
-    M_ta_zx = h_star_in_base_y + total_sps_zx
-    M_ta_zy = -h_star_in_base_x - total_sps_zy
+    M_ta_xy = M_ta_sps_xy + h_star_z
+    M_ta_xz = M_ta_sps_xz - h_star_y
+    M_ta_yx = M_ta_sps_yx - h_star_z
+    M_ta_yz = M_ta_sps_yz + h_star_x
+    M_ta_zx = M_ta_sps_zx + h_star_y
+    M_ta_zy = M_ta_sps_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 - total_sps_xx_3
-    M_aa_xy = J_star_t_9 + total_sps_xy_3
-    M_aa_xz = J_star_t_10 - total_sps_xz_3
-    M_aa_yy = J_star_t_13 - total_sps_yy_3
-    M_aa_yz = J_star_t_15 + total_sps_yz_3
-    M_aa_zz = J_star_t_17 - total_sps_zz_3
+    M_aa_xx = J_star_xx + M_aa_sps_xx
+    M_aa_xy = J_star_xy + M_aa_sps_xy
+    M_aa_xz = J_star_xz + M_aa_sps_xz
+    M_aa_yy = J_star_yy + M_aa_sps_yy
+    M_aa_yz = J_star_yz + M_aa_sps_yz
+    M_aa_zz = J_star_zz + M_aa_sps_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_sps_xy
-    out_M[12] = -total_sps_xy
-    out_M[2] = -total_sps_xz
-    out_M[24] = -total_sps_xz
+    out_M[1] = M_tt_xy
+    out_M[12] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[24] = M_tt_xz
     out_M[13] = M_tt_yy
-    out_M[14] = -total_sps_yz
-    out_M[25] = -total_sps_yz
+    out_M[14] = M_tt_yz
+    out_M[25] = M_tt_yz
     out_M[26] = M_tt_zz
-    out_M[3] = total_sps_xx_2
-    out_M[36] = total_sps_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[36] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[48] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[60] = M_ta_xz
     out_M[15] = M_ta_yx
     out_M[37] = M_ta_yx
-    out_M[16] = -total_sps_yy_2
-    out_M[49] = -total_sps_yy_2
+    out_M[16] = -M_ta_t
+    out_M[49] = -M_ta_t
     out_M[17] = M_ta_yz
     out_M[61] = M_ta_yz
     out_M[27] = M_ta_zx
     out_M[38] = M_ta_zx
     out_M[28] = M_ta_zy
     out_M[50] = M_ta_zy
-    out_M[29] = -total_sps_zz_2
-    out_M[62] = -total_sps_zz_2
+    out_M[29] = M_ta_zz
+    out_M[62] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[39] = M_aa_xx
     out_M[40] = M_aa_xy
     out_M[51] = M_aa_xy
@@ -2349,8 +2464,9 @@ def _run_Z(m, X, V):
     cos = m.cos
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2403,58 +2519,81 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
-            sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
-            sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
-            sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
-            sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
-            sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
-            sps_platform_point_z,
+        sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
+            sps_Sigma_3_in_axes3_xx, sps_Sigma_3_in_axes3_yy, sps_Sigma_3_in_axes3_zz,
+            sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
+            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_platform_point_x,
+            sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -2467,241 +2606,262 @@ def _run_Z(m, X, V):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = -inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_root_1
+        sps_c_2_t = inv_sps_root_2*sps_root_1
         # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_t
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_v_1_t = sps_c_2*sps_c_3_t
-        sps_v_1_t_2 = sps_c_2*sps_s_3
-        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
-        sps_v_1_t_4 = sps_root_2*sps_v_1_t
-        # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_t = sps_c_3_t*sps_root_2
-        sps_v_2_t_2 = sps_root_2*sps_s_3
-        # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
-        sps_w_1_t = sps_s_2*sps_s_3
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-w_1) reciprocal vector 1
-        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
-        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
-        axis_y_sps_axes3_in_base_x = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
-            sps_base_frame_xz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_y = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
-            sps_base_frame_yz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_z = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
-            sps_base_frame_zz*sps_v_1_t_2
-        )
-        axis_x_sps_axes3_x = (
-        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
-        )
-        axis_x_sps_axes3_y = (
-        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
-        )
-        axis_x_sps_axes3_z = (
-        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
-        )
-        # (sps-w_2) reciprocal vector 2
-        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
-        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
         # (sps-S_dot) velocity of the connection point
-        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
-        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
-        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
+        sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
+        sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x
         sps_S_dot_x = sps_S_dot_t + t_dot_x
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
+        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
+        sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
+        sps_v_2_t = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        # (sps-w_4) reciprocal vector 3
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_tip_x = (
+        sps_S_dot_rest_t = sps_s_2*sps_s_3
+        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
+        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        axis_y_sps_axes3_x = (
+        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_xx
+        )
+        axis_y_sps_axes3_y = (
+        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_yx
+        )
+        axis_y_sps_axes3_z = (
+        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_zx
+        )
+        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
+        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
+        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
+        sps_S_dot_rest_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
             axis_x_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_dot_z
+        sps_S_dot_rest_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_dot_x + axis_y_sps_axes3_y*sps_S_dot_y +
+            axis_y_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_z = (
-        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
+        sps_S_dot_rest_in_axes3_z = (
+        sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
+        )
+        # (sps-qd_1) rate of joint 1
+        inv_sps_w_1_t = 1.0/sps_w_1_t
+        sps_qd_1 = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
         )
         # (sps-qd_2) rate of joint 2
-        sps_qd_1 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
-        )
-        sps_qd_2 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 + sps_S_dot_rest_tip_y*sps_v_1_t_3)
+        sps_qd_2_t = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_t = sps_qd_1*sps_s_2
-        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
+        sps_omega_1_t = sps_c_2_t*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
-        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
+        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_z = sps_omega_1_t + sps_yd_3
-        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3
-        sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3
-        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
+        # (sps-W_3) centripetal tensor of link 3
+        sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
+        sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
+        sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
         # (sps-u_1) centripetal acceleration of the connection point
         sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
         sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
         sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
-        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y
-        sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y
-        # (sps-W_3) centripetal tensor of link 3
-        sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x
-        sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y
-        sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z
-        sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y
-        sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z
-        sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z
-        # (sps-bias) acceleration of the connection point at zero joint accelerations
-        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
-        sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz + sps_beta_3_y)
-        sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
-        # (sps-u_1) centripetal acceleration of the connection point
-        sps_u_1_tip_x = (
+        sps_u_1_in_axes3_x = (
         axis_x_sps_axes3_x*sps_u_1_x + axis_x_sps_axes3_y*sps_u_1_y + axis_x_sps_axes3_z*sps_u_1_z
         )
-        sps_u_1_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_u_1_x + axis_y_sps_axes3_in_base_y*sps_u_1_y +
-            axis_y_sps_axes3_in_base_z*sps_u_1_z
+        sps_u_1_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_u_1_x + axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z
+        )
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
+        sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
+        sps_bias_in_axes3_x = (
+        sps_bias_t*sps_omega_2_in_axes3_y + sps_root_2*(sps_W_3_in_axes3_xz +
+            sps_beta_3_in_axes3_y)
+        )
+        sps_bias_in_axes3_y = (
+        sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x) -
+            sps_bias_t*sps_omega_2_in_axes3_x
         )
         # (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        sps_rel_o_x = sps_u_1_tip_x - sps_bias_x
-        sps_rel_o_y = sps_u_1_tip_y - sps_bias_y
-        # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        sps_qdd_1_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_2_t_2 - sps_rel_o_y*sps_v_2_t)
-        sps_qdd_2_o = inv_sps_w_2_t_3*(sps_rel_o_x*sps_v_1_t_4 + sps_rel_o_y*sps_v_1_t_3)
-        # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        sps_alpha_2_o_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1_o*sps_s_2
-        sps_alpha_2_o_y = sps_zeta_2_y - sps_c_2*sps_qdd_1_o
-        # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
-        sps_alpha_3_o_x = sps_zeta_3_x - sps_alpha_2_o_y*sps_c_3_t - sps_qdd_2_o*sps_s_3
-        sps_alpha_3_o_y = sps_c_3_t*sps_qdd_2_o - sps_zeta_3_y - sps_alpha_2_o_y*sps_s_3
-        # (sps-B_3_o) remainder of the acceleration tensor of link 3
-        sps_B_3_o_xy = sps_W_3_xy - sps_alpha_2_o_x
-        sps_B_3_o_xz = sps_W_3_xz + sps_alpha_3_o_y
-        sps_B_3_o_yx = sps_W_3_xy + sps_alpha_2_o_x
-        sps_B_3_o_yz = sps_W_3_yz - sps_alpha_3_o_x
-        sps_B_3_o_zx = sps_W_3_xz - sps_alpha_3_o_y
-        sps_B_3_o_zy = sps_W_3_yz + sps_alpha_3_o_x
-        # (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
-        sps_phi_4_o_z = (
-        sps_B_3_o_zx*sps_h_4_y + sps_B_3_o_zy*sps_h_4_z - sps_h_4_x*(sps_W_3_t + sps_W_3_t_2)
+        sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - sps_bias_in_axes3_x
+        sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - sps_bias_in_axes3_y
+        # (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        sps_qdd_1_o = (
+        inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t + sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x)
         )
-        # (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        sps_g_tip_x = (
+        # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        sps_qdd_2_o = (
+        -inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y)
+        )
+        # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
+        sps_alpha_2_o_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1_o*sps_s_2
+        sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1_o
+        # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
+        sps_alpha_3_o_in_axes3_x = (
+        sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_y*sps_c_3 + sps_qdd_2_o*sps_s_3
+        )
+        sps_alpha_3_o_in_axes3_y = (
+        sps_zeta_3_in_axes3_y + sps_c_3*sps_qdd_2_o - sps_alpha_2_o_in_axes2_y*sps_s_3
+        )
+        # (sps-B_3_o) remainder of the acceleration tensor of link 3
+        sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_x
+        sps_B_3_o_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y
+        sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_x
+        sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x
+        sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y
+        sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x
+        # (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+        sps_g_in_axes3_x = (
         axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
         )
-        sps_g_tip_y = (
-        axis_y_sps_axes3_in_base_x*gravity_x + axis_y_sps_axes3_in_base_y*gravity_y +
-            axis_y_sps_axes3_in_base_z*gravity_z
+        sps_g_in_axes3_y = (
+        axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y + axis_y_sps_axes3_z*gravity_z
         )
-        sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y + gravity_z*sps_axis_z_z
-        # (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
-        sps_acc_4_o_x = sps_u_1_tip_x - sps_g_tip_x
-        sps_acc_4_o_y = sps_u_1_tip_y - sps_g_tip_y
-        sps_acc_4_o_z = (
-        sps_axis_z_x*sps_u_1_x + sps_axis_z_y*sps_u_1_y + sps_axis_z_z*sps_u_1_z - sps_g_tip_z
+        sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y + gravity_z*sps_w_4_z
+        sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - sps_g_in_axes3_x
+        sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - sps_g_in_axes3_y
+        sps_acc_4_o_in_axes3_z = (
+        sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y + sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z
+        )
+        # (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning about its reference point
+        sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
+        sps_phi_4_o_in_axes3_z = (
+        sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y + sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z -
+            sps_h_4_in_spec3_x*(sps_phi_4_o_t + sps_phi_4_o_t_2)
         )
         # (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-        sps_mu_3_o_x = (
-        sps_B_3_o_yx*sps_J_group_3_xz + sps_B_3_o_zy*sps_Sigma_3_yy +
-            sps_J_group_3_yz*(sps_W_3_t_2 - sps_W_3_t_3) + sps_acc_4_o_z*sps_h_4_z +
-            sps_g_tip_y*sps_h_3_x - sps_B_3_o_yz*sps_Sigma_3_zz - sps_B_3_o_zx*sps_J_group_3_xy -
-            sps_acc_4_o_y*sps_h_4_x - sps_g_tip_z*sps_h_3_z
+        sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_o_in_axes3_x = (
+        sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
+            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + sps_g_in_axes3_y*sps_h_3_in_spec3_x -
+            sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z
         )
-        sps_mu_3_o_y = (
-        sps_B_3_o_xz*sps_Sigma_3_zz + sps_B_3_o_zy*sps_J_group_3_xy + sps_acc_4_o_x*sps_h_4_x +
-            sps_g_tip_z*sps_h_3_y - sps_B_3_o_xy*sps_J_group_3_yz - sps_B_3_o_zx*sps_Sigma_3_xx -
-            sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) - sps_acc_4_o_z*sps_h_4_y -
-            sps_g_tip_x*sps_h_3_x
+        sps_mu_3_o_in_axes3_y = (
+        sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
+            sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
+            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - sps_g_in_axes3_x*sps_h_3_in_spec3_x
         )
-        sps_mu_3_o_z = (
-        sps_B_3_o_xz*sps_J_group_3_yz + sps_B_3_o_yx*sps_Sigma_3_xx + sps_J_group_3_xy*(sps_W_3_t
-            - sps_W_3_t_2) + sps_acc_4_o_y*sps_h_4_y + sps_g_tip_x*sps_h_3_z -
-            sps_B_3_o_xy*sps_Sigma_3_yy - sps_B_3_o_yz*sps_J_group_3_xz - sps_acc_4_o_x*sps_h_4_z
-            - sps_g_tip_y*sps_h_3_y
+        sps_mu_3_o_in_axes3_z = (
+        sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
+            sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
+            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + sps_g_in_axes3_x*sps_h_3_in_spec3_z -
+            sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+            sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
-        sps_mu_3_o_r0_y = sps_mu_3_o_x*sps_s_3 - sps_c_3_t*sps_mu_3_o_y
+        sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_x*sps_s_3
         # (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        sps_Gamma_1_o = sps_mu_3_o_x*sps_v_1_t + sps_mu_3_o_y*sps_v_1_t_2 + sps_mu_3_o_z*sps_s_2
-        # (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        sps_c_o_x = (
-        sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) - inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t_2 -
-            sps_mu_3_o_r0_y*sps_v_1_t_4) - sps_B_3_o_xy*sps_h_4_z - sps_B_3_o_xz*sps_h_4_x
+        sps_Gamma_1_o = (
+        sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y +
+            sps_mu_3_o_in_axes3_z*sps_s_2
         )
-        sps_c_o_y = (
-        inv_sps_w_2_t_3*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_r0_y*sps_v_1_t_3) +
-            sps_h_4_z*(sps_W_3_t + sps_W_3_t_3) - sps_B_3_o_yx*sps_h_4_y - sps_B_3_o_yz*sps_h_4_x
+        # (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        sps_c_o_in_axes3_x = (
+        sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
+            inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
+            sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x
+        )
+        sps_c_o_in_axes3_y = (
+        inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
+            sps_Gamma_1_o*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t + sps_phi_4_o_t)
+            - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x
         )
         # (sps-U) velocity and gravity terms of the leg force
-        sps_U_in_base_x = (
-        sps_axis_z_x*sps_phi_4_o_z - axis_x_sps_axes3_x*sps_c_o_x -
-            axis_y_sps_axes3_in_base_x*sps_c_o_y
+        sps_U_x = (
+        sps_phi_4_o_in_axes3_z*sps_w_4_x - axis_x_sps_axes3_x*sps_c_o_in_axes3_x -
+            axis_y_sps_axes3_x*sps_c_o_in_axes3_y
         )
-        sps_U_in_base_y = (
-        sps_axis_z_y*sps_phi_4_o_z - axis_x_sps_axes3_y*sps_c_o_x -
-            axis_y_sps_axes3_in_base_y*sps_c_o_y
+        sps_U_y = (
+        sps_phi_4_o_in_axes3_z*sps_w_4_y - axis_x_sps_axes3_y*sps_c_o_in_axes3_x -
+            axis_y_sps_axes3_y*sps_c_o_in_axes3_y
         )
-        sps_U_in_base_z = (
-        sps_axis_z_z*sps_phi_4_o_z - axis_x_sps_axes3_z*sps_c_o_x -
-            axis_y_sps_axes3_in_base_z*sps_c_o_y
+        sps_U_z = (
+        sps_phi_4_o_in_axes3_z*sps_w_4_z - axis_x_sps_axes3_z*sps_c_o_in_axes3_x -
+            axis_y_sps_axes3_z*sps_c_o_in_axes3_y
         )
         # (Z_a) rotational part of Z
-        sps_Z_a_t = sps_U_in_base_z*sps_q_in_base_y - sps_U_in_base_y*sps_q_in_base_z
-        sps_Z_a_t_2 = sps_U_in_base_x*sps_q_in_base_z - sps_U_in_base_z*sps_q_in_base_x
-        sps_Z_a_t_3 = sps_U_in_base_y*sps_q_in_base_x - sps_U_in_base_x*sps_q_in_base_y
+        sps_Z_a_t = sps_U_z*sps_q_y - sps_U_y*sps_q_z
+        sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x
+        sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        sps_U_in_base_x, sps_U_in_base_y, sps_U_in_base_z, sps_Z_a_t, sps_Z_a_t_2,
-            sps_Z_a_t_3,
+        sps_U_x, sps_U_y, sps_U_z, sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3,
         ))
-        out_Z[_Z_sps[0][leg]] = sps_mu_3_o_z
-    total_sps_x, total_sps_y, total_sps_z, total_sps_x_2, total_sps_y_2, total_sps_z_2 = sums
+        # (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
+        out_Z[_Z_sps[0][leg]] = sps_mu_3_o_in_axes3_z
+    Z_t_sps_x, Z_t_sps_y, Z_t_sps_z, Z_a_sps_x, Z_a_sps_y, Z_a_sps_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_sps_x
-    Z_t_y = Z_p_y + total_sps_y
-    Z_t_z = Z_p_z + total_sps_z
+    Z_t_x = Z_p_x + Z_t_sps_x
+    Z_t_y = Z_p_y + Z_t_sps_y
+    Z_t_z = Z_p_z + Z_t_sps_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_sps_x_2
-    Z_a_y = Z_q_in_base_y + total_sps_y_2
-    Z_a_z = Z_q_in_base_z + total_sps_z_2
+    Z_a_x = Z_a_sps_x + Z_q_x
+    Z_a_y = Z_a_sps_y + Z_q_y
+    Z_a_z = Z_a_sps_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2757,18 +2917,18 @@ def _run_H(m, X):
             sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -2780,30 +2940,31 @@ def _run_H(m, X):
         # (sps-rho2_1) squared amplitude
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
-        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
+        # (sps-w_4) reciprocal vector 3
         inv_sps_root_2 = 1.0/sps_root_2
-        # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-H_a_4) moment of the column's unit force about the platform origin
-        sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z
-        sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x
-        sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y
+        sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y
+        sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
+        sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
-        out_H[_H_sps[0][leg]] = sps_axis_z_x
-        out_H[_H_sps[1][leg]] = sps_axis_z_y
-        out_H[_H_sps[2][leg]] = sps_axis_z_z
+        # (sps-w_4) reciprocal vector 3
+        out_H[_H_sps[0][leg]] = sps_w_4_x
+        out_H[_H_sps[1][leg]] = sps_w_4_y
+        out_H[_H_sps[2][leg]] = sps_w_4_z
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
         out_H[_H_sps[3][leg]] = sps_H_a_4_x
         out_H[_H_sps[4][leg]] = sps_H_a_4_y
         out_H[_H_sps[5][leg]] = sps_H_a_4_z
@@ -2817,8 +2978,9 @@ def _run_required(m, X, V, A):
     cos = m.cos
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2884,91 +3046,109 @@ def _run_required(m, X, V, A):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_required = m.zeros("required")
     out_H = m.zeros("H")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
-            sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
-            sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
-            sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
-            sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
-            sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_platform_point_x, sps_platform_point_y,
-            sps_platform_point_z,
+        sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
+            sps_Sigma_3_in_axes3_xx, sps_Sigma_3_in_axes3_yy, sps_Sigma_3_in_axes3_zz,
+            sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
+            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_platform_point_x,
+            sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
         sps_ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -2981,253 +3161,279 @@ def _run_required(m, X, V, A):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = -inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_root_1
+        sps_c_2_t = inv_sps_root_2*sps_root_1
         # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_t
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_v_1_t = sps_c_2*sps_c_3_t
-        sps_v_1_t_2 = sps_c_2*sps_s_3
-        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
-        sps_v_1_t_4 = sps_root_2*sps_v_1_t
-        # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_t = sps_c_3_t*sps_root_2
-        sps_v_2_t_2 = sps_root_2*sps_s_3
-        # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
-        sps_w_1_t = sps_s_2*sps_s_3
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-w_1) reciprocal vector 1
-        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
-        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
-        axis_y_sps_axes3_in_base_x = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
-            sps_base_frame_xz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_y = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
-            sps_base_frame_yz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_z = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
-            sps_base_frame_zz*sps_v_1_t_2
-        )
-        axis_x_sps_axes3_x = (
-        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
-        )
-        axis_x_sps_axes3_y = (
-        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
-        )
-        axis_x_sps_axes3_z = (
-        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
-        )
-        # (sps-w_2) reciprocal vector 2
-        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
-        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
         # (sps-S_dot) velocity of the connection point
-        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
-        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
-        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
+        sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
+        sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x
         sps_S_dot_x = sps_S_dot_t + t_dot_x
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
+        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
+        sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
+        sps_v_2_t = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        # (sps-w_4) reciprocal vector 3
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_tip_x = (
+        sps_S_dot_rest_t = sps_s_2*sps_s_3
+        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
+        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        axis_y_sps_axes3_x = (
+        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_xx
+        )
+        axis_y_sps_axes3_y = (
+        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_yx
+        )
+        axis_y_sps_axes3_z = (
+        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_zx
+        )
+        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
+        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
+        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
+        sps_S_dot_rest_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
             axis_x_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_dot_z
+        sps_S_dot_rest_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_dot_x + axis_y_sps_axes3_y*sps_S_dot_y +
+            axis_y_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_z = (
-        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
+        sps_S_dot_rest_in_axes3_z = (
+        sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
+        )
+        # (sps-qd_1) rate of joint 1
+        inv_sps_w_1_t = 1.0/sps_w_1_t
+        sps_qd_1 = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
         )
         # (sps-qd_2) rate of joint 2
-        sps_qd_1 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
-        )
-        sps_qd_2 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 + sps_S_dot_rest_tip_y*sps_v_1_t_3)
+        sps_qd_2_t = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_t = sps_qd_1*sps_s_2
-        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
+        sps_omega_1_t = sps_c_2_t*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
-        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
+        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_z = sps_omega_1_t + sps_yd_3
-        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3
-        sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3
-        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
-        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y
-        sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
-        sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x
-        sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y
-        sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z
-        sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y
-        sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z
-        sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z
-        # (sps-bias) acceleration of the connection point at zero joint accelerations
-        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
-        sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz + sps_beta_3_y)
-        sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
-        # (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        sps_g_tip_x = (
-        axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
-        )
-        sps_g_tip_y = (
-        axis_y_sps_axes3_in_base_x*gravity_x + axis_y_sps_axes3_in_base_y*gravity_y +
-            axis_y_sps_axes3_in_base_z*gravity_z
-        )
-        sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y + gravity_z*sps_axis_z_z
-        # (sps-H_a_4) moment of the column's unit force about the platform origin
-        sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z
-        sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x
-        sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y
+        sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
+        sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
+        sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
         # (sps-a_p) acceleration of the connection point without its centripetal part
-        sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y
-        sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z
-        sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x
+        sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y
+        sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z
+        sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x
         # (sps-S_ddot) acceleration of the connection point
         sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
         sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
         sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
-        sps_S_ddot_tip_x = (
+        sps_S_ddot_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
             axis_x_sps_axes3_z*sps_S_ddot_z
         )
-        sps_S_ddot_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_ddot_x + axis_y_sps_axes3_in_base_y*sps_S_ddot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_ddot_z
+        sps_S_ddot_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_ddot_x + axis_y_sps_axes3_y*sps_S_ddot_y +
+            axis_y_sps_axes3_z*sps_S_ddot_z
+        )
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
+        sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
+        sps_bias_in_axes3_x = (
+        sps_bias_t*sps_omega_2_in_axes3_y + sps_root_2*(sps_W_3_in_axes3_xz +
+            sps_beta_3_in_axes3_y)
+        )
+        sps_bias_in_axes3_y = (
+        sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x) -
+            sps_bias_t*sps_omega_2_in_axes3_x
         )
         # (sps-rel) acceleration of the connection point left to the joint accelerations
-        sps_rel_x = sps_S_ddot_tip_x - sps_bias_x
-        sps_rel_y = sps_S_ddot_tip_y - sps_bias_y
+        sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - sps_bias_in_axes3_x
+        sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - sps_bias_in_axes3_y
         # (sps-qdd_1) acceleration of joint 1
-        sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t)
-        sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_4 + sps_rel_y*sps_v_1_t_3)
-        # (sps-acc_4) acceleration of the reference point of link 4, less gravity
-        sps_acc_4_x = sps_S_ddot_tip_x - sps_g_tip_x
-        sps_acc_4_y = sps_S_ddot_tip_y - sps_g_tip_y
-        sps_acc_4_z = (
-        sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y + sps_S_ddot_z*sps_axis_z_z -
-            sps_g_tip_z
+        sps_qdd_1 = (
+        inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t + sps_rel_in_axes3_y*sps_v_2_in_axes3_x)
+        )
+        # (sps-qdd_2) acceleration of joint 2
+        sps_qdd_2_t = (
+        inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-alpha_2) angular acceleration of link 2
-        sps_alpha_2_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1*sps_s_2
-        sps_alpha_2_y = sps_zeta_2_y - sps_c_2*sps_qdd_1
+        sps_alpha_2_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1*sps_s_2
+        sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1
         # (sps-alpha_3) angular acceleration of link 3
-        sps_alpha_3_x = sps_zeta_3_x - sps_alpha_2_y*sps_c_3_t - sps_qdd_2*sps_s_3
-        sps_alpha_3_y = sps_c_3_t*sps_qdd_2 - sps_zeta_3_y - sps_alpha_2_y*sps_s_3
-        sps_alpha_3_z = sps_alpha_2_x + sps_ydd_3
+        sps_alpha_3_in_axes3_x = (
+        sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_y*sps_c_3 - sps_qdd_2_t*sps_s_3
+        )
+        sps_alpha_3_in_axes3_y = (
+        sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3 - sps_c_3*sps_qdd_2_t
+        )
+        sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3
         # (sps-B_3) acceleration tensor of link 3
-        sps_B_3_xy = sps_W_3_xy - sps_alpha_3_z
-        sps_B_3_xz = sps_W_3_xz + sps_alpha_3_y
-        sps_B_3_yx = sps_W_3_xy + sps_alpha_3_z
-        sps_B_3_yz = sps_W_3_yz - sps_alpha_3_x
-        sps_B_3_zx = sps_W_3_xz - sps_alpha_3_y
-        sps_B_3_zy = sps_W_3_yz + sps_alpha_3_x
+        sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z
+        sps_B_3_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y
+        sps_B_3_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_3_in_axes3_z
+        sps_B_3_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x
+        sps_B_3_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y
+        sps_B_3_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x
+        # (sps-acc_4) acceleration of the reference point of link 4, less gravity
+        sps_g_in_axes3_x = (
+        axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
+        )
+        sps_g_in_axes3_y = (
+        axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y + axis_y_sps_axes3_z*gravity_z
+        )
+        sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y + gravity_z*sps_w_4_z
+        sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - sps_g_in_axes3_x
+        sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - sps_g_in_axes3_y
+        sps_acc_4_in_axes3_z = (
+        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z -
+            sps_g_in_axes3_z
+        )
         # (sps-phi_4) inertia force of link 4 from its turning about its reference point
-        sps_phi_4_z = (
-        sps_B_3_zx*sps_h_4_y + sps_B_3_zy*sps_h_4_z - sps_h_4_x*(sps_W_3_t + sps_W_3_t_2)
+        sps_phi_4_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_phi_4_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
+        sps_phi_4_in_axes3_z = (
+        sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y + sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z -
+            sps_h_4_in_spec3_x*(sps_phi_4_t + sps_phi_4_t_2)
         )
         # (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        sps_mu_3_x = (
-        sps_B_3_yx*sps_J_group_3_xz + sps_B_3_zy*sps_Sigma_3_yy + sps_J_group_3_yz*(sps_W_3_t_2 -
-            sps_W_3_t_3) + sps_acc_4_z*sps_h_4_z + sps_g_tip_y*sps_h_3_x -
-            sps_B_3_yz*sps_Sigma_3_zz - sps_B_3_zx*sps_J_group_3_xy - sps_acc_4_y*sps_h_4_x -
-            sps_g_tip_z*sps_h_3_z
+        sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_in_axes3_x = (
+        sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_J_group_3_in_axes3_yz*(sps_phi_4_t_2
+            - sps_mu_3_t) + sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z +
+            sps_g_in_axes3_y*sps_h_3_in_spec3_x - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z
         )
-        sps_mu_3_y = (
-        sps_B_3_xz*sps_Sigma_3_zz + sps_B_3_zy*sps_J_group_3_xy + sps_acc_4_x*sps_h_4_x +
-            sps_g_tip_z*sps_h_3_y - sps_B_3_xy*sps_J_group_3_yz - sps_B_3_zx*sps_Sigma_3_xx -
-            sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) - sps_acc_4_z*sps_h_4_y -
-            sps_g_tip_x*sps_h_3_x
+        sps_mu_3_in_axes3_y = (
+        sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_phi_4_t -
+            sps_mu_3_t) - sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
+            sps_g_in_axes3_x*sps_h_3_in_spec3_x
         )
-        sps_mu_3_z = (
-        sps_B_3_xz*sps_J_group_3_yz + sps_B_3_yx*sps_Sigma_3_xx + sps_J_group_3_xy*(sps_W_3_t -
-            sps_W_3_t_2) + sps_acc_4_y*sps_h_4_y + sps_g_tip_x*sps_h_3_z -
-            sps_B_3_xy*sps_Sigma_3_yy - sps_B_3_yz*sps_J_group_3_xz - sps_acc_4_x*sps_h_4_z -
-            sps_g_tip_y*sps_h_3_y
+        sps_mu_3_in_axes3_z = (
+        sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_phi_4_t -
+            sps_phi_4_t_2) + sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
+            sps_g_in_axes3_x*sps_h_3_in_spec3_z - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+            sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
-        sps_mu_3_r0_y = sps_mu_3_x*sps_s_3 - sps_c_3_t*sps_mu_3_y
+        sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_y + sps_mu_3_in_axes3_x*sps_s_3
         # (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight
-        sps_Gamma_1 = sps_mu_3_x*sps_v_1_t + sps_mu_3_y*sps_v_1_t_2 + sps_mu_3_z*sps_s_2
+        sps_Gamma_1 = (
+        sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y +
+            sps_mu_3_in_axes3_z*sps_s_2
+        )
         # (sps-c) leg force on the platform without actuation and without the mass at the connection point
+        sps_c_in_axes3_x = (
+        sps_h_4_in_spec3_y*(sps_mu_3_t + sps_phi_4_t_2) - inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t +
+            sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) - sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z -
+            sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x
+        )
+        sps_c_in_axes3_y = (
+        inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x - sps_Gamma_1*sps_v_2_in_axes3_x) +
+            sps_h_4_in_spec3_z*(sps_mu_3_t + sps_phi_4_t) - sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y
+            - sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x
+        )
         sps_c_x = (
-        sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) - inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t_2 -
-            sps_mu_3_r0_y*sps_v_1_t_4) - sps_B_3_xy*sps_h_4_z - sps_B_3_xz*sps_h_4_x
+        axis_x_sps_axes3_x*sps_c_in_axes3_x + axis_y_sps_axes3_x*sps_c_in_axes3_y -
+            sps_phi_4_in_axes3_z*sps_w_4_x
         )
         sps_c_y = (
-        inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t + sps_mu_3_r0_y*sps_v_1_t_3) + sps_h_4_z*(sps_W_3_t
-            + sps_W_3_t_3) - sps_B_3_yx*sps_h_4_y - sps_B_3_yz*sps_h_4_x
+        axis_x_sps_axes3_y*sps_c_in_axes3_x + axis_y_sps_axes3_y*sps_c_in_axes3_y -
+            sps_phi_4_in_axes3_z*sps_w_4_y
         )
-        sps_c_in_base_x = (
-        axis_x_sps_axes3_x*sps_c_x + axis_y_sps_axes3_in_base_x*sps_c_y - sps_axis_z_x*sps_phi_4_z
-        )
-        sps_c_in_base_y = (
-        axis_x_sps_axes3_y*sps_c_x + axis_y_sps_axes3_in_base_y*sps_c_y - sps_axis_z_y*sps_phi_4_z
-        )
-        sps_c_in_base_z = (
-        axis_x_sps_axes3_z*sps_c_x + axis_y_sps_axes3_in_base_z*sps_c_y - sps_axis_z_z*sps_phi_4_z
+        sps_c_z = (
+        axis_x_sps_axes3_z*sps_c_in_axes3_x + axis_y_sps_axes3_z*sps_c_in_axes3_y -
+            sps_phi_4_in_axes3_z*sps_w_4_z
         )
         # (R_a) moment that actuators and external wrench must give
-        sps_R_a_t = sps_c_in_base_z*sps_q_in_base_y - sps_c_in_base_y*sps_q_in_base_z
-        sps_R_a_t_2 = sps_c_in_base_x*sps_q_in_base_z - sps_c_in_base_z*sps_q_in_base_x
-        sps_R_a_t_3 = sps_c_in_base_y*sps_q_in_base_x - sps_c_in_base_x*sps_q_in_base_y
+        sps_R_a_t = sps_c_y*sps_q_z - sps_c_z*sps_q_y
+        sps_R_a_t_2 = sps_c_z*sps_q_x - sps_c_x*sps_q_z
+        sps_R_a_t_3 = sps_c_x*sps_q_y - sps_c_y*sps_q_x
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
+        sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y
+        sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
+        sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        sps_c_in_base_x, sps_c_in_base_y, sps_c_in_base_z, sps_R_a_t, sps_R_a_t_2,
-            sps_R_a_t_3,
+        sps_c_x, sps_c_y, sps_c_z, sps_R_a_t, sps_R_a_t_2, sps_R_a_t_3,
         ))
-        out_required[_required_sps[0][leg]] = sps_mu_3_z
-        out_H[_H_sps[0][leg]] = sps_axis_z_x
-        out_H[_H_sps[1][leg]] = sps_axis_z_y
-        out_H[_H_sps[2][leg]] = sps_axis_z_z
+        # (sps-P_3) inertia and weight of the leg along the extra freedom of joint 3
+        out_required[_required_sps[0][leg]] = sps_mu_3_in_axes3_z
+        # (sps-w_4) reciprocal vector 3
+        out_H[_H_sps[0][leg]] = sps_w_4_x
+        out_H[_H_sps[1][leg]] = sps_w_4_y
+        out_H[_H_sps[2][leg]] = sps_w_4_z
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
         out_H[_H_sps[3][leg]] = sps_H_a_4_x
         out_H[_H_sps[4][leg]] = sps_H_a_4_y
         out_H[_H_sps[5][leg]] = sps_H_a_4_z
-    total_sps_x, total_sps_y, total_sps_z, total_sps_x_2, total_sps_y_2, total_sps_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_sps_x, R_a_sps_y, R_a_sps_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_sps_x
-    R_t_y = f_p_y - total_sps_y
-    R_t_z = f_p_z - total_sps_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_sps_x_2
-    R_a_y = mu_p_in_base_y - total_sps_y_2
-    R_a_z = mu_p_in_base_z - total_sps_z_2
+    R_a_x = R_a_sps_x + mu_p_x
+    R_a_y = R_a_sps_y + mu_p_y
+    R_a_z = R_a_sps_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -3309,29 +3515,31 @@ def _run_inverse_kinematics(m, X):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-q_1) displacement of joint 1
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_q_1 = atan2(inv_sps_root_1*sps_py_1, inv_sps_root_1*sps_px_1)
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
-        # (sps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_sps_root_2 = 1.0/sps_root_2
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        # (sps-q_1) displacement of joint 1
-        sps_q_1 = atan2(inv_sps_root_1*sps_py_1, inv_sps_root_1*sps_px_1)
         # (sps-q_2) displacement of joint 2
-        sps_q_2 = atan2(-inv_sps_root_2*sps_xi_1_t, inv_sps_root_2*sps_root_1)
+        inv_sps_root_2 = 1.0/sps_root_2
+        sps_q_2 = atan2(-inv_sps_root_2*sps_xi_1_in_axes1_z, inv_sps_root_2*sps_root_1)
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
+        # (sps-q_1) displacement of joint 1
         out_q[_q_sps[0][leg]] = sps_q_1
+        # (sps-q_2) displacement of joint 2
         out_q[_q_sps[1][leg]] = sps_q_2
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_q[_q_sps[2][leg]] = sps_y_3_extra
+        # (sps-q_4) displacement of joint 4
         out_q[_q_sps[3][leg]] = sps_root_2
     return ok, (out_q,)
 
@@ -3402,18 +3610,22 @@ def _run_joint_rates(m, X, V):
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -3426,92 +3638,91 @@ def _run_joint_rates(m, X, V):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = -inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_root_1
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_v_1_t = sps_c_2*sps_s_3
-        sps_v_1_t_2 = sps_root_2*sps_v_1_t
-        sps_v_1_t_3 = sps_c_2*sps_c_3_t*sps_root_2
-        # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_t = sps_c_3_t*sps_root_2
-        sps_v_2_t_2 = sps_root_2*sps_s_3
-        # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
-        sps_w_1_t = inv_sps_root_2*sps_s_3*sps_xi_1_t
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-w_1) reciprocal vector 1
-        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
-        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
-        axis_y_sps_axes3_in_base_x = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
-            sps_base_frame_xz*sps_v_1_t
-        )
-        axis_y_sps_axes3_in_base_y = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
-            sps_base_frame_yz*sps_v_1_t
-        )
-        axis_y_sps_axes3_in_base_z = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
-            sps_base_frame_zz*sps_v_1_t
-        )
-        # (sps-w_2) reciprocal vector 2
-        sps_w_2_t = sps_v_1_t_2*sps_v_2_t_2 + sps_v_1_t_3*sps_v_2_t
-        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        sps_c_2_t = inv_sps_root_2*sps_root_1
         # (sps-S_dot) velocity of the connection point
-        sps_S_dot_x = t_dot_x + omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
-        sps_S_dot_y = t_dot_y + omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
-        sps_S_dot_z = t_dot_z + omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_x = t_dot_x + omega_y*sps_q_z - omega_z*sps_q_y
+        sps_S_dot_y = t_dot_y + omega_z*sps_q_x - omega_x*sps_q_z
+        sps_S_dot_z = t_dot_z + omega_x*sps_q_y - omega_y*sps_q_x
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
+        sps_v_1_in_axes3_y = sps_c_2_t*sps_c_3*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
+        sps_v_2_t = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        # (sps-w_4) reciprocal vector 3
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_tip_x = (
-        sps_S_dot_x*(axis_y_sps_axes3_in_base_y*sps_axis_z_z -
-            axis_y_sps_axes3_in_base_z*sps_axis_z_y) +
-            sps_S_dot_y*(axis_y_sps_axes3_in_base_z*sps_axis_z_x -
-            axis_y_sps_axes3_in_base_x*sps_axis_z_z) +
-            sps_S_dot_z*(axis_y_sps_axes3_in_base_x*sps_axis_z_y -
-            axis_y_sps_axes3_in_base_y*sps_axis_z_x)
+        sps_S_dot_rest_t = inv_sps_root_2*sps_s_3*sps_xi_1_in_axes1_z
+        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
+        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        axis_y_sps_axes3_x = (
+        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_xx
         )
-        sps_S_dot_rest_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_dot_z
+        axis_y_sps_axes3_y = (
+        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_yx
         )
-        sps_S_dot_rest_tip_z = (
-        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
+        axis_y_sps_axes3_z = (
+        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_zx
+        )
+        sps_S_dot_rest_in_axes3_x = (
+        sps_S_dot_x*(axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y) +
+            sps_S_dot_y*(axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z) +
+            sps_S_dot_z*(axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x)
+        )
+        sps_S_dot_rest_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_dot_x + axis_y_sps_axes3_y*sps_S_dot_y +
+            axis_y_sps_axes3_z*sps_S_dot_z
+        )
+        sps_S_dot_rest_in_axes3_z = (
+        sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
+        )
+        # (sps-qd_1) rate of joint 1
+        inv_sps_w_1_t = 1.0/sps_w_1_t
+        sps_qd_1 = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
         )
         # (sps-qd_2) rate of joint 2
-        sps_qd_1 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
-        )
-        sps_qd_2 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_3 + sps_S_dot_rest_tip_y*sps_v_1_t_2)
+        sps_qd_2_t = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
+        # (sps-qd_1) rate of joint 1
         out_qd[_qd_sps[0][leg]] = sps_qd_1
-        out_qd[_qd_sps[1][leg]] = -sps_qd_2
+        # (sps-qd_2) rate of joint 2
+        out_qd[_qd_sps[1][leg]] = -sps_qd_2_t
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qd[_qd_sps[2][leg]] = sps_yd_3
-        out_qd[_qd_sps[3][leg]] = sps_S_dot_rest_tip_z
+        # (sps-qd_4) rate of joint 4
+        out_qd[_qd_sps[3][leg]] = sps_S_dot_rest_in_axes3_z
     return ok, (out_qd,)
 
 
@@ -3595,18 +3806,22 @@ def _run_joint_accelerations(m, X, V, A):
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
         sps_ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -3619,147 +3834,152 @@ def _run_joint_accelerations(m, X, V, A):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = -inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_root_1
+        sps_c_2_t = inv_sps_root_2*sps_root_1
         # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_t
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_v_1_t = sps_c_2*sps_s_3
-        sps_v_1_t_2 = sps_root_2*sps_v_1_t
-        sps_v_1_t_3 = sps_c_2*sps_c_3_t*sps_root_2
-        # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_t = sps_c_3_t*sps_root_2
-        sps_v_2_t_2 = sps_root_2*sps_s_3
-        # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
-        sps_w_1_t = sps_s_2*sps_s_3
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-w_1) reciprocal vector 1
-        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
-        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
-        axis_y_sps_axes3_in_base_x = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
-            sps_base_frame_xz*sps_v_1_t
-        )
-        axis_y_sps_axes3_in_base_y = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
-            sps_base_frame_yz*sps_v_1_t
-        )
-        axis_y_sps_axes3_in_base_z = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
-            sps_base_frame_zz*sps_v_1_t
-        )
-        axis_x_sps_axes3_x = (
-        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
-        )
-        axis_x_sps_axes3_y = (
-        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
-        )
-        axis_x_sps_axes3_z = (
-        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
-        )
-        # (sps-w_2) reciprocal vector 2
-        sps_w_2_t = sps_v_1_t_2*sps_v_2_t_2 + sps_v_1_t_3*sps_v_2_t
-        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
         # (sps-S_dot) velocity of the connection point
-        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
-        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
-        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
+        sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
+        sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x
         sps_S_dot_x = sps_S_dot_t + t_dot_x
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
+        sps_v_1_in_axes3_y = sps_c_2_t*sps_c_3*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
+        sps_v_2_t = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        # (sps-w_4) reciprocal vector 3
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_tip_x = (
+        sps_S_dot_rest_t = sps_s_2*sps_s_3
+        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
+        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        axis_y_sps_axes3_x = (
+        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_xx
+        )
+        axis_y_sps_axes3_y = (
+        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_yx
+        )
+        axis_y_sps_axes3_z = (
+        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_zx
+        )
+        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
+        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
+        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
+        sps_S_dot_rest_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
             axis_x_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_dot_z
+        sps_S_dot_rest_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_dot_x + axis_y_sps_axes3_y*sps_S_dot_y +
+            axis_y_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_z = (
-        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
+        sps_S_dot_rest_in_axes3_z = (
+        sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
+        )
+        # (sps-qd_1) rate of joint 1
+        inv_sps_w_1_t = 1.0/sps_w_1_t
+        sps_qd_1 = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
         )
         # (sps-qd_2) rate of joint 2
-        sps_qd_1 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
-        )
-        sps_qd_2 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_3 + sps_S_dot_rest_tip_y*sps_v_1_t_2)
+        sps_qd_2_t = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_t = sps_qd_1*sps_s_2
-        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
+        sps_omega_1_t = sps_c_2_t*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
-        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
+        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_z = sps_omega_1_t + sps_yd_3
-        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
-        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_x = sps_omega_2_r1_y*sps_yd_3 - sps_c_3_t*sps_zeta_2_y
-        sps_beta_3_y = -sps_omega_2_r1_x*sps_yd_3 - sps_s_3*sps_zeta_2_y
-        # (sps-bias) acceleration of the connection point at zero joint accelerations
-        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
-        sps_bias_x = (
-        sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_beta_3_y + sps_omega_2_r1_x*sps_omega_3_z)
-        )
-        sps_bias_y = (
-        sps_root_2*(sps_omega_2_r1_y*sps_omega_3_z - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
-        )
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
         # (sps-a_p) acceleration of the connection point without its centripetal part
-        sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y
-        sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z
-        sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x
+        sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y
+        sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z
+        sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x
         # (sps-S_ddot) acceleration of the connection point
         sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
         sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
         sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_in_axes3_x = sps_c_3*sps_zeta_2_in_axes2_y + sps_omega_2_in_axes3_y*sps_yd_3
+        sps_beta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3 - sps_s_3*sps_zeta_2_in_axes2_y
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
+        sps_bias_in_axes3_x = (
+        sps_bias_t*sps_omega_2_in_axes3_y + sps_root_2*(sps_beta_3_in_axes3_y +
+            sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z)
+        )
+        sps_bias_in_axes3_y = (
+        sps_root_2*(sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z - sps_beta_3_in_axes3_x) -
+            sps_bias_t*sps_omega_2_in_axes3_x
+        )
         # (sps-rel) acceleration of the connection point left to the joint accelerations
-        sps_rel_x = (
+        sps_rel_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
-            axis_x_sps_axes3_z*sps_S_ddot_z - sps_bias_x
+            axis_x_sps_axes3_z*sps_S_ddot_z - sps_bias_in_axes3_x
         )
-        sps_rel_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_ddot_x + axis_y_sps_axes3_in_base_y*sps_S_ddot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_ddot_z - sps_bias_y
+        sps_rel_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_ddot_x + axis_y_sps_axes3_y*sps_S_ddot_y +
+            axis_y_sps_axes3_z*sps_S_ddot_z - sps_bias_in_axes3_y
         )
-        sps_rel_z = (
-        sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y + sps_S_ddot_z*sps_axis_z_z +
-            sps_root_2*(sps_omega_2_r1_x*sps_omega_2_r1_x + sps_omega_2_r1_y*sps_omega_2_r1_y)
+        sps_rel_in_axes3_z = (
+        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z +
+            sps_root_2*(sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x +
+            sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y)
         )
         # (sps-qdd_1) acceleration of joint 1
-        sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t)
-        sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_3 + sps_rel_y*sps_v_1_t_2)
+        sps_qdd_1 = (
+        inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t + sps_rel_in_axes3_y*sps_v_2_in_axes3_x)
+        )
+        # (sps-qdd_2) acceleration of joint 2
+        sps_qdd_2_t = (
+        inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_in_axes3_x*sps_v_1_in_axes3_y)
+        )
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
+        # (sps-qdd_1) acceleration of joint 1
         out_qdd[_qdd_sps[0][leg]] = sps_qdd_1
-        out_qdd[_qdd_sps[1][leg]] = -sps_qdd_2
+        # (sps-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_sps[1][leg]] = -sps_qdd_2_t
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_qdd[_qdd_sps[2][leg]] = sps_ydd_3
-        out_qdd[_qdd_sps[3][leg]] = sps_rel_z
+        # (sps-qdd_4) acceleration of joint 4
+        out_qdd[_qdd_sps[3][leg]] = sps_rel_in_axes3_z
     return ok, (out_qdd,)
 
 
@@ -3836,30 +4056,35 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        sps_J_group_3_xy, sps_J_group_3_xz, sps_J_group_3_yz, sps_Sigma_3_xx, sps_Sigma_3_yy,
-            sps_Sigma_3_zz, sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz,
-            sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx,
-            sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x, sps_base_point_y,
-            sps_base_point_z, sps_branch_1, sps_branch_2, sps_h_3_x, sps_h_3_y, sps_h_3_z,
-            sps_h_4_x, sps_h_4_y, sps_h_4_z, sps_link4_mass, sps_platform_point_x,
-            sps_platform_point_y, sps_platform_point_z,
+        sps_J_group_3_in_axes3_xy, sps_J_group_3_in_axes3_xz, sps_J_group_3_in_axes3_yz,
+            sps_Sigma_3_in_axes3_xx, sps_Sigma_3_in_axes3_yy, sps_Sigma_3_in_axes3_zz,
+            sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
+            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_link4_mass,
+            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         sps_yd_3 = V[[6, 7, 8, 9, 10, 11][leg]]
         sps_ydd_3 = A[[6, 7, 8, 9, 10, 11][leg]]
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -3872,234 +4097,254 @@ def _run_legs(m, X, V, A):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = -inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_root_1
+        sps_c_2_t = inv_sps_root_2*sps_root_1
         # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_t
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_v_1_t = sps_c_2*sps_c_3_t
-        sps_v_1_t_2 = sps_c_2*sps_s_3
-        sps_v_1_t_3 = sps_root_2*sps_v_1_t_2
-        sps_v_1_t_4 = sps_root_2*sps_v_1_t
-        # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_t = sps_c_3_t*sps_root_2
-        sps_v_2_t_2 = sps_root_2*sps_s_3
-        # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
-        sps_w_1_t = sps_s_2*sps_s_3
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-w_1) reciprocal vector 1
-        axis_y_sps_axes3_r4_x = sps_c_1*sps_c_3_t - sps_s_1*sps_w_1_t
-        axis_y_sps_axes3_r4_y = -sps_c_1*sps_w_1_t - sps_c_3_t*sps_s_1
-        axis_y_sps_axes3_in_base_x = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_xx + axis_y_sps_axes3_r4_y*sps_base_frame_xy +
-            sps_base_frame_xz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_y = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_yx + axis_y_sps_axes3_r4_y*sps_base_frame_yy +
-            sps_base_frame_yz*sps_v_1_t_2
-        )
-        axis_y_sps_axes3_in_base_z = (
-        axis_y_sps_axes3_r4_x*sps_base_frame_zx + axis_y_sps_axes3_r4_y*sps_base_frame_zy +
-            sps_base_frame_zz*sps_v_1_t_2
-        )
-        axis_x_sps_axes3_x = (
-        axis_y_sps_axes3_in_base_y*sps_axis_z_z - axis_y_sps_axes3_in_base_z*sps_axis_z_y
-        )
-        axis_x_sps_axes3_y = (
-        axis_y_sps_axes3_in_base_z*sps_axis_z_x - axis_y_sps_axes3_in_base_x*sps_axis_z_z
-        )
-        axis_x_sps_axes3_z = (
-        axis_y_sps_axes3_in_base_x*sps_axis_z_y - axis_y_sps_axes3_in_base_y*sps_axis_z_x
-        )
-        # (sps-w_2) reciprocal vector 2
-        sps_w_2_t = sps_v_1_t_3*sps_v_2_t_2 + sps_v_1_t_4*sps_v_2_t
-        inv_sps_w_2_t_3 = 1.0/sps_w_2_t
+        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
         # (sps-S_dot) velocity of the connection point
-        sps_S_dot_t = omega_y*sps_q_in_base_z - omega_z*sps_q_in_base_y
-        sps_S_dot_t_2 = omega_z*sps_q_in_base_x - omega_x*sps_q_in_base_z
-        sps_S_dot_t_3 = omega_x*sps_q_in_base_y - omega_y*sps_q_in_base_x
+        sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
+        sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
+        sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x
         sps_S_dot_x = sps_S_dot_t + t_dot_x
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
+        # (sps-v_1) velocity of the connection point per rate of joint 1
+        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
+        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
+        sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
+        # (sps-v_2) velocity of the connection point per rate of joint 2
+        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
+        sps_v_2_t = sps_root_2*sps_s_3
+        # (sps-w_1) reciprocal vector 1
+        sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
+        # (sps-w_4) reciprocal vector 3
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_tip_x = (
+        sps_S_dot_rest_t = sps_s_2*sps_s_3
+        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
+        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        axis_y_sps_axes3_x = (
+        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_xx
+        )
+        axis_y_sps_axes3_y = (
+        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_yx
+        )
+        axis_y_sps_axes3_z = (
+        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
+            sps_S_dot_rest_t_2*sps_base_frame_zx
+        )
+        axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
+        axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
+        axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y - axis_y_sps_axes3_y*sps_w_4_x
+        sps_S_dot_rest_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_dot_x + axis_x_sps_axes3_y*sps_S_dot_y +
             axis_x_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_dot_x + axis_y_sps_axes3_in_base_y*sps_S_dot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_dot_z
+        sps_S_dot_rest_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_dot_x + axis_y_sps_axes3_y*sps_S_dot_y +
+            axis_y_sps_axes3_z*sps_S_dot_z
         )
-        sps_S_dot_rest_tip_z = (
-        sps_S_dot_x*sps_axis_z_x + sps_S_dot_y*sps_axis_z_y + sps_S_dot_z*sps_axis_z_z
+        sps_S_dot_rest_in_axes3_z = (
+        sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y + sps_S_dot_z*sps_w_4_z
+        )
+        # (sps-qd_1) rate of joint 1
+        inv_sps_w_1_t = 1.0/sps_w_1_t
+        sps_qd_1 = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x)
         )
         # (sps-qd_2) rate of joint 2
-        sps_qd_1 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_2_t_2 - sps_S_dot_rest_tip_y*sps_v_2_t)
-        )
-        sps_qd_2 = (
-        inv_sps_w_2_t_3*(sps_S_dot_rest_tip_x*sps_v_1_t_4 + sps_S_dot_rest_tip_y*sps_v_1_t_3)
+        sps_qd_2_t = (
+        inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_t = sps_qd_1*sps_s_2
-        sps_omega_1_t_2 = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
+        sps_omega_1_t = sps_c_2_t*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_r1_x = sps_c_3_t*sps_omega_1_t_2 - sps_qd_2*sps_s_3
-        sps_omega_2_r1_y = sps_c_3_t*sps_qd_2 + sps_omega_1_t_2*sps_s_3
+        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
+        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_z = sps_omega_1_t + sps_yd_3
-        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
-        sps_zeta_3_x = sps_omega_2_r1_y*sps_yd_3
-        sps_zeta_3_y = sps_omega_2_r1_x*sps_yd_3
-        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_y = sps_omega_1_t*sps_qd_2
-        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_x = sps_zeta_3_x - sps_c_3_t*sps_zeta_2_y
-        sps_beta_3_y = -sps_zeta_3_y - sps_s_3*sps_zeta_2_y
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
-        sps_W_3_t = sps_omega_2_r1_x*sps_omega_2_r1_x
-        sps_W_3_t_2 = sps_omega_2_r1_y*sps_omega_2_r1_y
-        sps_W_3_t_3 = sps_omega_3_z*sps_omega_3_z
-        sps_W_3_xy = sps_omega_2_r1_x*sps_omega_2_r1_y
-        sps_W_3_xz = sps_omega_2_r1_x*sps_omega_3_z
-        sps_W_3_yz = sps_omega_2_r1_y*sps_omega_3_z
-        # (sps-bias) acceleration of the connection point at zero joint accelerations
-        sps_bias_t = 2.0*sps_S_dot_rest_tip_z
-        sps_bias_x = sps_bias_t*sps_omega_2_r1_y + sps_root_2*(sps_W_3_xz + sps_beta_3_y)
-        sps_bias_y = sps_root_2*(sps_W_3_yz - sps_beta_3_x) - sps_bias_t*sps_omega_2_r1_x
-        # (sps-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        sps_g_tip_x = (
-        axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
-        )
-        sps_g_tip_y = (
-        axis_y_sps_axes3_in_base_x*gravity_x + axis_y_sps_axes3_in_base_y*gravity_y +
-            axis_y_sps_axes3_in_base_z*gravity_z
-        )
-        sps_g_tip_z = gravity_x*sps_axis_z_x + gravity_y*sps_axis_z_y + gravity_z*sps_axis_z_z
+        sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
+        sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
+        sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
         # (sps-a_p) acceleration of the connection point without its centripetal part
-        sps_a_p_x = t_ddot_x + alpha_y*sps_q_in_base_z - alpha_z*sps_q_in_base_y
-        sps_a_p_y = t_ddot_y + alpha_z*sps_q_in_base_x - alpha_x*sps_q_in_base_z
-        sps_a_p_z = t_ddot_z + alpha_x*sps_q_in_base_y - alpha_y*sps_q_in_base_x
+        sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y
+        sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z
+        sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x
         # (sps-S_ddot) acceleration of the connection point
         sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2
         sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
         sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
-        sps_S_ddot_tip_x = (
+        sps_S_ddot_in_axes3_x = (
         axis_x_sps_axes3_x*sps_S_ddot_x + axis_x_sps_axes3_y*sps_S_ddot_y +
             axis_x_sps_axes3_z*sps_S_ddot_z
         )
-        sps_S_ddot_tip_y = (
-        axis_y_sps_axes3_in_base_x*sps_S_ddot_x + axis_y_sps_axes3_in_base_y*sps_S_ddot_y +
-            axis_y_sps_axes3_in_base_z*sps_S_ddot_z
+        sps_S_ddot_in_axes3_y = (
+        axis_y_sps_axes3_x*sps_S_ddot_x + axis_y_sps_axes3_y*sps_S_ddot_y +
+            axis_y_sps_axes3_z*sps_S_ddot_z
+        )
+        # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
+        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
+        sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
+        sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
+        # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y
+        # (sps-bias) acceleration of the connection point at zero joint accelerations
+        sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
+        sps_bias_in_axes3_x = (
+        sps_bias_t*sps_omega_2_in_axes3_y + sps_root_2*(sps_W_3_in_axes3_xz +
+            sps_beta_3_in_axes3_y)
+        )
+        sps_bias_in_axes3_y = (
+        sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x) -
+            sps_bias_t*sps_omega_2_in_axes3_x
         )
         # (sps-rel) acceleration of the connection point left to the joint accelerations
-        sps_rel_x = sps_S_ddot_tip_x - sps_bias_x
-        sps_rel_y = sps_S_ddot_tip_y - sps_bias_y
+        sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - sps_bias_in_axes3_x
+        sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - sps_bias_in_axes3_y
         # (sps-qdd_1) acceleration of joint 1
-        sps_qdd_1 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_2_t_2 - sps_rel_y*sps_v_2_t)
-        sps_qdd_2 = inv_sps_w_2_t_3*(sps_rel_x*sps_v_1_t_4 + sps_rel_y*sps_v_1_t_3)
-        # (sps-acc_4) acceleration of the reference point of link 4, less gravity
-        sps_acc_4_x = sps_S_ddot_tip_x - sps_g_tip_x
-        sps_acc_4_y = sps_S_ddot_tip_y - sps_g_tip_y
-        sps_acc_4_z = (
-        sps_S_ddot_x*sps_axis_z_x + sps_S_ddot_y*sps_axis_z_y + sps_S_ddot_z*sps_axis_z_z -
-            sps_g_tip_z
+        sps_qdd_1 = (
+        inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t + sps_rel_in_axes3_y*sps_v_2_in_axes3_x)
+        )
+        # (sps-qdd_2) acceleration of joint 2
+        sps_qdd_2_t = (
+        inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
+            sps_rel_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-alpha_2) angular acceleration of link 2
-        sps_alpha_2_x = sps_omega_1_t_2*sps_qd_2 + sps_qdd_1*sps_s_2
-        sps_alpha_2_y = sps_zeta_2_y - sps_c_2*sps_qdd_1
+        sps_alpha_2_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1*sps_s_2
+        sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1
         # (sps-alpha_3) angular acceleration of link 3
-        sps_alpha_3_x = sps_zeta_3_x - sps_alpha_2_y*sps_c_3_t - sps_qdd_2*sps_s_3
-        sps_alpha_3_y = sps_c_3_t*sps_qdd_2 - sps_zeta_3_y - sps_alpha_2_y*sps_s_3
-        sps_alpha_3_z = sps_alpha_2_x + sps_ydd_3
+        sps_alpha_3_in_axes3_x = (
+        sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_y*sps_c_3 - sps_qdd_2_t*sps_s_3
+        )
+        sps_alpha_3_in_axes3_y = (
+        sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3 - sps_c_3*sps_qdd_2_t
+        )
+        sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3
         # (sps-B_3) acceleration tensor of link 3
-        sps_B_3_xy = sps_W_3_xy - sps_alpha_3_z
-        sps_B_3_xz = sps_W_3_xz + sps_alpha_3_y
-        sps_B_3_yx = sps_W_3_xy + sps_alpha_3_z
-        sps_B_3_yz = sps_W_3_yz - sps_alpha_3_x
-        sps_B_3_zx = sps_W_3_xz - sps_alpha_3_y
-        sps_B_3_zy = sps_W_3_yz + sps_alpha_3_x
+        sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z
+        sps_B_3_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y
+        sps_B_3_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_3_in_axes3_z
+        sps_B_3_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x
+        sps_B_3_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y
+        sps_B_3_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x
+        # (sps-acc_4) acceleration of the reference point of link 4, less gravity
+        sps_g_in_axes3_x = (
+        axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y + axis_x_sps_axes3_z*gravity_z
+        )
+        sps_g_in_axes3_y = (
+        axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y + axis_y_sps_axes3_z*gravity_z
+        )
+        sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y + gravity_z*sps_w_4_z
+        sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - sps_g_in_axes3_x
+        sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - sps_g_in_axes3_y
+        sps_acc_4_in_axes3_z = (
+        sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y + sps_S_ddot_z*sps_w_4_z -
+            sps_g_in_axes3_z
+        )
         # (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points
-        sps_mu_3_x = (
-        sps_B_3_yx*sps_J_group_3_xz + sps_B_3_zy*sps_Sigma_3_yy + sps_J_group_3_yz*(sps_W_3_t_2 -
-            sps_W_3_t_3) + sps_acc_4_z*sps_h_4_z + sps_g_tip_y*sps_h_3_x -
-            sps_B_3_yz*sps_Sigma_3_zz - sps_B_3_zx*sps_J_group_3_xy - sps_acc_4_y*sps_h_4_x -
-            sps_g_tip_z*sps_h_3_z
+        sps_mu_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x
+        sps_mu_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y
+        sps_mu_3_t_3 = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z
+        sps_mu_3_in_axes3_x = (
+        sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_J_group_3_in_axes3_yz*(sps_mu_3_t_2
+            - sps_mu_3_t_3) + sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z +
+            sps_g_in_axes3_y*sps_h_3_in_spec3_x - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z
         )
-        sps_mu_3_y = (
-        sps_B_3_xz*sps_Sigma_3_zz + sps_B_3_zy*sps_J_group_3_xy + sps_acc_4_x*sps_h_4_x +
-            sps_g_tip_z*sps_h_3_y - sps_B_3_xy*sps_J_group_3_yz - sps_B_3_zx*sps_Sigma_3_xx -
-            sps_J_group_3_xz*(sps_W_3_t - sps_W_3_t_3) - sps_acc_4_z*sps_h_4_y -
-            sps_g_tip_x*sps_h_3_x
+        sps_mu_3_in_axes3_y = (
+        sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_mu_3_t -
+            sps_mu_3_t_3) - sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
+            sps_g_in_axes3_x*sps_h_3_in_spec3_x
         )
-        sps_mu_3_z = (
-        sps_B_3_xz*sps_J_group_3_yz + sps_B_3_yx*sps_Sigma_3_xx + sps_J_group_3_xy*(sps_W_3_t -
-            sps_W_3_t_2) + sps_acc_4_y*sps_h_4_y + sps_g_tip_x*sps_h_3_z -
-            sps_B_3_xy*sps_Sigma_3_yy - sps_B_3_yz*sps_J_group_3_xz - sps_acc_4_x*sps_h_4_z -
-            sps_g_tip_y*sps_h_3_y
+        sps_mu_3_in_axes3_z = (
+        sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_mu_3_t -
+            sps_mu_3_t_2) + sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
+            sps_g_in_axes3_x*sps_h_3_in_spec3_z - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+            sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
-        sps_mu_3_r0_y = sps_mu_3_x*sps_s_3 - sps_c_3_t*sps_mu_3_y
+        sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_y + sps_mu_3_in_axes3_x*sps_s_3
         # (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight
-        sps_Gamma_1 = sps_mu_3_x*sps_v_1_t + sps_mu_3_y*sps_v_1_t_2 + sps_mu_3_z*sps_s_2
-        # (sps-c) leg force on the platform without actuation and without the mass at the connection point
-        sps_c_x = (
-        sps_h_4_y*(sps_W_3_t_2 + sps_W_3_t_3) - inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t_2 -
-            sps_mu_3_r0_y*sps_v_1_t_4) - sps_B_3_xy*sps_h_4_z - sps_B_3_xz*sps_h_4_x
+        sps_Gamma_1 = (
+        sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y +
+            sps_mu_3_in_axes3_z*sps_s_2
         )
-        sps_c_y = (
-        inv_sps_w_2_t_3*(sps_Gamma_1*sps_v_2_t + sps_mu_3_r0_y*sps_v_1_t_3) + sps_h_4_z*(sps_W_3_t
-            + sps_W_3_t_3) - sps_B_3_yx*sps_h_4_y - sps_B_3_yz*sps_h_4_x
+        # (sps-c) leg force on the platform without actuation and without the mass at the connection point
+        sps_c_in_axes3_x = (
+        sps_h_4_in_spec3_y*(sps_mu_3_t_2 + sps_mu_3_t_3) - inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t +
+            sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) - sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z -
+            sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x
+        )
+        sps_c_in_axes3_y = (
+        inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x - sps_Gamma_1*sps_v_2_in_axes3_x) +
+            sps_h_4_in_spec3_z*(sps_mu_3_t + sps_mu_3_t_3) -
+            sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x
         )
         # (sps-c_true) leg force on the platform without actuation, the last link's mass included
-        sps_c_true_x = sps_c_x - sps_acc_4_x*sps_link4_mass
-        sps_c_true_y = sps_c_y - sps_acc_4_y*sps_link4_mass
+        sps_c_true_in_axes3_x = sps_c_in_axes3_x - sps_acc_4_in_axes3_x*sps_link4_mass
+        sps_c_true_in_axes3_y = sps_c_in_axes3_y - sps_acc_4_in_axes3_y*sps_link4_mass
+        sps_c_true_in_axes3_z = (
+        sps_h_4_in_spec3_x*(sps_mu_3_t + sps_mu_3_t_2) - sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y -
+            sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z - sps_acc_4_in_axes3_z*sps_link4_mass
+        )
+        sps_c_true_x = (
+        axis_x_sps_axes3_x*sps_c_true_in_axes3_x + axis_y_sps_axes3_x*sps_c_true_in_axes3_y +
+            sps_c_true_in_axes3_z*sps_w_4_x
+        )
+        sps_c_true_y = (
+        axis_x_sps_axes3_y*sps_c_true_in_axes3_x + axis_y_sps_axes3_y*sps_c_true_in_axes3_y +
+            sps_c_true_in_axes3_z*sps_w_4_y
+        )
         sps_c_true_z = (
-        sps_h_4_x*(sps_W_3_t + sps_W_3_t_2) - sps_B_3_zx*sps_h_4_y - sps_B_3_zy*sps_h_4_z -
-            sps_acc_4_z*sps_link4_mass
-        )
-        sps_c_true_in_base_x = (
-        axis_x_sps_axes3_x*sps_c_true_x + axis_y_sps_axes3_in_base_x*sps_c_true_y +
-            sps_axis_z_x*sps_c_true_z
-        )
-        sps_c_true_in_base_y = (
-        axis_x_sps_axes3_y*sps_c_true_x + axis_y_sps_axes3_in_base_y*sps_c_true_y +
-            sps_axis_z_y*sps_c_true_z
-        )
-        sps_c_true_in_base_z = (
-        axis_x_sps_axes3_z*sps_c_true_x + axis_y_sps_axes3_in_base_z*sps_c_true_y +
-            sps_axis_z_z*sps_c_true_z
+        axis_x_sps_axes3_z*sps_c_true_in_axes3_x + axis_y_sps_axes3_z*sps_c_true_in_axes3_y +
+            sps_c_true_in_axes3_z*sps_w_4_z
         )
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
-        out_leg_force[_leg_force_sps[0][leg]] = sps_c_true_in_base_x
-        out_leg_force[_leg_force_sps[1][leg]] = sps_c_true_in_base_y
-        out_leg_force[_leg_force_sps[2][leg]] = sps_c_true_in_base_z
-        out_drive[_drive_sps[0][leg]] = sps_axis_z_x
-        out_drive[_drive_sps[1][leg]] = sps_axis_z_y
-        out_drive[_drive_sps[2][leg]] = sps_axis_z_z
+        # (sps-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_sps[0][leg]] = sps_c_true_x
+        out_leg_force[_leg_force_sps[1][leg]] = sps_c_true_y
+        out_leg_force[_leg_force_sps[2][leg]] = sps_c_true_z
+        # (sps-w_4) reciprocal vector 3
+        out_drive[_drive_sps[0][leg]] = sps_w_4_x
+        out_drive[_drive_sps[1][leg]] = sps_w_4_y
+        out_drive[_drive_sps[2][leg]] = sps_w_4_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -4109,7 +4354,10 @@ def _run_potential(m, X):
     sin = m.sin
     cos = m.cos
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4149,20 +4397,22 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        sps_b_r0_x, sps_b_r0_y, sps_b_r0_z, sps_base_frame_xx, sps_base_frame_xy,
-            sps_base_frame_xz, sps_base_frame_yx, sps_base_frame_yy, sps_base_frame_yz,
-            sps_base_frame_zx, sps_base_frame_zy, sps_base_frame_zz, sps_base_point_x,
-            sps_base_point_y, sps_base_point_z, sps_branch_1, sps_branch_2, sps_g_r0_x,
-            sps_g_r0_y, sps_g_r0_z, sps_h_3_x, sps_h_3_y, sps_h_3_z, sps_h_4_x, sps_h_4_y,
-            sps_h_4_z, sps_link3_mass, sps_platform_point_x, sps_platform_point_y,
-            sps_platform_point_z,
+        sps_base_frame_xx, sps_base_frame_xy, sps_base_frame_xz, sps_base_frame_yx,
+            sps_base_frame_yy, sps_base_frame_yz, sps_base_frame_zx, sps_base_frame_zy,
+            sps_base_frame_zz, sps_base_point_x, sps_base_point_y, sps_base_point_z, sps_branch_1,
+            sps_branch_2, sps_h_3_in_spec3_x, sps_h_3_in_spec3_y, sps_h_3_in_spec3_z,
+            sps_h_4_in_spec3_x, sps_h_4_in_spec3_y, sps_h_4_in_spec3_z, sps_link3_mass,
+            sps_platform_point_x, sps_platform_point_y, sps_platform_point_z, sps_potential_t,
+            sps_potential_t_2, sps_potential_t_3, sps_potential_t_4, sps_potential_t_5,
+            sps_potential_t_6,
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         # (sps-S) from the base point to the connection point
@@ -4178,6 +4428,10 @@ def _run_potential(m, X):
         t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z -
             sps_base_point_z
         )
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -4190,52 +4444,52 @@ def _run_potential(m, X):
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-root_1) amplitude, with the sign of the branch
         sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = -inv_sps_root_1*sps_py_1
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_px_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_root_1
+        sps_c_2_t = inv_sps_root_2*sps_root_1
         # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_t
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
+        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
         # (potential) potential energy
-        sps_g_r1_x = sps_g_r0_y*sps_s_1 - sps_c_1*sps_g_r0_x
-        sps_g_r1_y = -sps_c_1*sps_g_r0_y - sps_g_r0_x*sps_s_1
-        sps_g_r3_y = -sps_c_2*sps_g_r0_z - sps_g_r1_y*sps_s_2
-        sps_b_r1_x = sps_b_r0_y*sps_s_1 - sps_b_r0_x*sps_c_1
-        sps_b_r1_y = -sps_b_r0_x*sps_s_1 - sps_b_r0_y*sps_c_1
-        sps_b_r3_y = -sps_b_r0_z*sps_c_2 - sps_b_r1_y*sps_s_2
-        sps_potential_t = (
-        (sps_g_r0_z*sps_s_2 - sps_c_2*sps_g_r1_y)*(sps_h_3_x + sps_h_4_x +
-            sps_link3_mass*(sps_b_r0_z*sps_s_2 - sps_b_r1_y*sps_c_2)) + (-sps_c_3_t*sps_g_r1_x -
-            sps_g_r3_y*sps_s_3)*(sps_h_3_z + sps_h_4_z + sps_link3_mass*(-sps_b_r1_x*sps_c_3_t -
-            sps_b_r3_y*sps_s_3)) + (sps_g_r1_x*sps_s_3 - sps_c_3_t*sps_g_r3_y)*(sps_h_3_y +
-            sps_h_4_y + sps_link3_mass*(sps_b_r1_x*sps_s_3 - sps_b_r3_y*sps_c_3_t))
+        sps_potential_t_7 = sps_c_1*sps_potential_t + sps_potential_t_2*sps_s_1
+        sps_potential_t_8 = sps_c_1*sps_potential_t_2 - sps_potential_t*sps_s_1
+        sps_potential_t_9 = -sps_c_2_t*sps_potential_t_3 - sps_potential_t_8*sps_s_2
+        sps_potential_t_10 = sps_c_1*sps_potential_t_4 + sps_potential_t_5*sps_s_1
+        sps_potential_t_11 = sps_c_1*sps_potential_t_5 - sps_potential_t_4*sps_s_1
+        sps_potential_t_12 = -sps_c_2_t*sps_potential_t_6 - sps_potential_t_11*sps_s_2
+        sps_potential_t_13 = (
+        (sps_potential_t_3*sps_s_2 - sps_c_2_t*sps_potential_t_8)*(sps_h_3_in_spec3_x +
+            sps_h_4_in_spec3_x + sps_link3_mass*(sps_potential_t_6*sps_s_2 -
+            sps_c_2_t*sps_potential_t_11)) + (sps_c_3*sps_potential_t_7 -
+            sps_potential_t_9*sps_s_3)*(sps_h_3_in_spec3_z + sps_h_4_in_spec3_z +
+            sps_link3_mass*(sps_c_3*sps_potential_t_10 - sps_potential_t_12*sps_s_3)) +
+            (sps_c_3*sps_potential_t_9 + sps_potential_t_7*sps_s_3)*(sps_h_3_in_spec3_y +
+            sps_h_4_in_spec3_y + sps_link3_mass*(sps_c_3*sps_potential_t_12 +
+            sps_potential_t_10*sps_s_3))
         )
         ok = (
         ok & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        sps_potential_t,
+        sps_potential_t_13,
         ))
-    total_sps, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_sps
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -4247,7 +4501,7 @@ def _run_condition(m, X):
     cos = m.cos
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -4290,6 +4544,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -4301,18 +4556,22 @@ def _run_condition(m, X):
         ) = k
         sps_y_3_extra = X[[7, 8, 9, 10, 11, 12][leg]]
         # (sps-S) from the base point to the connection point
-        sps_q_in_base_x = (
+        sps_q_x = (
         R_xx*sps_platform_point_x + R_xy*sps_platform_point_y + R_xz*sps_platform_point_z
         )
-        sps_q_in_base_y = (
+        sps_q_y = (
         R_yx*sps_platform_point_x + R_yy*sps_platform_point_y + R_yz*sps_platform_point_z
         )
-        sps_q_in_base_z = (
+        sps_q_z = (
         R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z
         )
-        sps_S_x = sps_q_in_base_x + t_x - sps_base_point_x
-        sps_S_y = sps_q_in_base_y + t_y - sps_base_point_y
-        sps_S_z = sps_q_in_base_z + t_z - sps_base_point_z
+        sps_S_x = sps_q_x + t_x - sps_base_point_x
+        sps_S_y = sps_q_y + t_y - sps_base_point_y
+        sps_S_z = sps_q_z + t_z - sps_base_point_z
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = -sin(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = cos(sps_y_3_extra)
         # (sps-px_1) component along the reference direction
         sps_px_1 = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
@@ -4324,69 +4583,66 @@ def _run_condition(m, X):
         # (sps-rho2_1) squared amplitude
         sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
         # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_t = (
+        sps_xi_1_in_axes1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
         # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_t*sps_xi_1_t
+        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
         # (sps-root_2) amplitude, with the sign of the branch
         sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2 = inv_sps_root_2*sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3_t = sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
+        sps_c_2_t = inv_sps_root_2*sps_branch_1*sqrt(sps_rho2_1)
         # (sps-w_1) reciprocal vector 1
-        sps_axis_z_x = inv_sps_root_2*sps_S_x
-        sps_axis_z_y = inv_sps_root_2*sps_S_y
-        sps_axis_z_z = inv_sps_root_2*sps_S_z
-        # (sps-w_2) reciprocal vector 2
-        sps_w_2_t = (
-        sps_c_2*sps_c_3_t*sps_c_3_t*sps_root_2*sps_root_2 +
-            sps_c_2*sps_root_2*sps_root_2*sps_s_3*sps_s_3
+        sps_w_1_t = (
+        sps_c_2_t*sps_c_3*sps_c_3*sps_root_2*sps_root_2 +
+            sps_c_2_t*sps_root_2*sps_root_2*sps_s_3*sps_s_3
         )
-        # (sps-H_a_4) moment of the column's unit force about the platform origin
-        sps_H_a_4_x = sps_axis_z_z*sps_q_in_base_y - sps_axis_z_y*sps_q_in_base_z
-        sps_H_a_4_y = sps_axis_z_x*sps_q_in_base_z - sps_axis_z_z*sps_q_in_base_x
-        sps_H_a_4_z = sps_axis_z_y*sps_q_in_base_x - sps_axis_z_x*sps_q_in_base_y
-        # (spread) rms distance of the platform points from their centroid
-        sps_spread_t = b_c_x - sps_platform_point_x
-        sps_spread_t_2 = b_c_y - sps_platform_point_y
-        sps_spread_t_3 = b_c_z - sps_platform_point_z
-        sps_spread_t_4 = (
-        sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 + sps_spread_t_3*sps_spread_t_3
-        )
-        # (sps-rho2_1) squared amplitude
-        sps_pivot_size = abs(sps_rho2_1)
-        # (sps-rho2_2) squared amplitude
-        sps_pivot_size_2 = abs(sps_rho2_2)
-        # (sps-w_2) reciprocal vector 2
-        sps_pivot_size_3 = abs(sps_w_2_t)
+        # (sps-w_4) reciprocal vector 3
+        sps_w_4_x = inv_sps_root_2*sps_S_x
+        sps_w_4_y = inv_sps_root_2*sps_S_y
+        sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        sps_pivot_size = abs(sps_rho2_1)
+        sps_pivot_size_2 = abs(sps_rho2_2)
+        sps_pivot_size_3 = abs(sps_w_1_t)
         sps_least_pivots = (
         least(least(1.25*sqrt(sps_pivot_size), 1.25*sqrt(sps_pivot_size_2)),
             1.5624999999999998*sps_pivot_size_3)
         )
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
+        sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y
+        sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
+        sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
+        # (spread) rms distance of the platform points from their centroid
+        sps_spread_t = b_c_in_platform_x - sps_platform_point_x
+        sps_spread_t_2 = b_c_in_platform_y - sps_platform_point_y
+        sps_spread_t_3 = b_c_in_platform_z - sps_platform_point_z
+        sps_spread_t_4 = (
+        sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 + sps_spread_t_3*sps_spread_t_3
+        )
         clear = (
         clear & m.every(leg, (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(-sps_w_2_t) >
+            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
         sps_spread_t_4,
         ))
-        out_H[_H_sps[0][leg]] = sps_axis_z_x
-        out_H[_H_sps[1][leg]] = sps_axis_z_y
-        out_H[_H_sps[2][leg]] = sps_axis_z_z
+        # (sps-w_4) reciprocal vector 3
+        out_H[_H_sps[0][leg]] = sps_w_4_x
+        out_H[_H_sps[1][leg]] = sps_w_4_y
+        out_H[_H_sps[2][leg]] = sps_w_4_z
+        # (sps-H_a_4) moment of the column's unit force about the platform origin
         out_H[_H_sps[3][leg]] = sps_H_a_4_x
         out_H[_H_sps[4][leg]] = sps_H_a_4_y
         out_H[_H_sps[5][leg]] = sps_H_a_4_z
+        # (sps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_sps[0][leg]] = sps_least_pivots
-    total_sps, = sums
+    spread_sps, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_sps)
+    spread = sqrt(spread_sps)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

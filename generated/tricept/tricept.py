@@ -455,7 +455,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -694,48 +694,68 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
+    # (ups-h_2) first moment of link 2 about the origin of link 2
+    ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass
+    ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass
+    ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass
     # (ups-h_3) first moment of link 3 about the connection point
-    ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass
-    ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass
-    ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (ups-J_2) inertia tensor of link 2 about the origin of link 2
-    ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
-    ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
-    ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
-    ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3
-    # (ups-J_3) inertia tensor of link 3 about the connection point
-    ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
-    ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
-    ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
-    ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3
-    # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
-    ups_J_group_2_xx = (
-    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t - ups_J_3_t_4)
+    ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass
+    ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass
+    ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass
+    # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+    ups_acc_3_t = (
+    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
     )
-    ups_J_group_2_xy = (
+    ups_acc_3_t_2 = (
+    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
+    )
+    ups_acc_3_t_3 = (
+    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    )
+    # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
+    ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
+    ups_J_group_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
+    ups_J_group_2_t_4 = ups_J_group_2_t + ups_J_group_2_t_2 + ups_J_group_2_t_3
+    ups_J_group_2_t_5 = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
+    ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
+    ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
+    ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7
+    ups_J_group_2_in_axes2_xx = (
+    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(ups_J_group_2_t -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8)
+    )
+    ups_J_group_2_in_axes2_xy = (
     ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_xz - ups_link3_inertia_xz
     )
-    ups_J_group_2_xz = (
+    ups_J_group_2_in_axes2_xz = (
     ups_link2_inertia_xy + ups_link3_inertia_xy -
         ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass
     )
-    ups_J_group_2_yy = (
-    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t_3 - ups_J_3_t_4)
+    ups_J_group_2_in_axes2_yy = (
+    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(ups_J_group_2_t_3 -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8)
     )
-    ups_J_group_2_yz = (
+    ups_J_group_2_in_axes2_yz = (
     ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_yz - ups_link3_inertia_yz
     )
-    ups_J_group_2_zz = (
-    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t_2 - ups_J_3_t_4)
+    ups_J_group_2_in_axes2_zz = (
+    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_group_2_t_2 -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8)
     )
+    # (ups-trace_J_2) half the trace of that inertia tensor
+    ups_trace_J_2 = (
+    0.5*ups_J_group_2_in_axes2_xx + 0.5*ups_J_group_2_in_axes2_yy + 0.5*ups_J_group_2_in_axes2_zz
+    )
+    # (ups-Sigma_2) second moment of mass of the links that turn with link 2
+    ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx
+    ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy
+    ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz
     # (h_star) first moment about the platform origin
     ups_h_star_t = ups_link3_mass*ups_platform_point_x
     ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
@@ -751,209 +771,200 @@ def _prepare(p):
     ups_J_star_t_8 = ups_link3_mass*(ups_J_star_t_2 - ups_J_star_t_4)
     ups_J_star_t_9 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z
     ups_J_star_t_10 = ups_link3_mass*(ups_J_star_t_3 - ups_J_star_t_4)
-    # (ups-h_2) first moment of link 2 about the origin of link 2
-    ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass
-    ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass
-    ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass
-    # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    ups_g_r0_x = (
-    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
-    )
-    ups_g_r0_y = (
-    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
-    )
-    ups_g_r0_z = (
-    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
-    )
-    # (ups-trace_J_2) half the trace of that inertia tensor
-    ups_trace_J_2 = 0.5*ups_J_group_2_xx + 0.5*ups_J_group_2_yy + 0.5*ups_J_group_2_zz
-    # (ups-Sigma_2) second moment of mass of the links that turn with link 2
-    ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx
-    ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy
-    ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz
     # (potential) potential energy
-    ups_b_r0_x = (
+    ups_potential_t = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    ups_b_r0_y = (
+    ups_potential_t_2 = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    ups_b_r0_z = (
+    ups_potential_t_3 = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
-    total_ups_x = np.sum(np.broadcast_to(ups_h_star_t, _ups))
-    total_ups_y = np.sum(np.broadcast_to(ups_h_star_t_2, _ups))
-    total_ups_z = np.sum(np.broadcast_to(ups_h_star_t_3, _ups))
-    total_ups_xx = np.sum(np.broadcast_to(ups_J_star_t_5, _ups))
-    total_ups_xy = np.sum(np.broadcast_to(ups_J_star_t_6, _ups))
-    total_ups_xz = np.sum(np.broadcast_to(ups_J_star_t_7, _ups))
-    total_ups_yy = np.sum(np.broadcast_to(ups_J_star_t_8, _ups))
-    total_ups_yz = np.sum(np.broadcast_to(ups_J_star_t_9, _ups))
-    total_ups_zz = np.sum(np.broadcast_to(ups_J_star_t_10, _ups))
-    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
-    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
-    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
+    m_star_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    h_star_ups_in_platform_x = np.sum(np.broadcast_to(ups_h_star_t, _ups))
+    h_star_ups_in_platform_y = np.sum(np.broadcast_to(ups_h_star_t_2, _ups))
+    h_star_ups_in_platform_z = np.sum(np.broadcast_to(ups_h_star_t_3, _ups))
+    J_star_ups_in_platform_xx = np.sum(np.broadcast_to(-ups_J_star_t_5, _ups))
+    J_star_ups_in_platform_xy = np.sum(np.broadcast_to(-ups_J_star_t_6, _ups))
+    J_star_ups_in_platform_xz = np.sum(np.broadcast_to(-ups_J_star_t_7, _ups))
+    J_star_ups_in_platform_yy = np.sum(np.broadcast_to(-ups_J_star_t_8, _ups))
+    J_star_ups_in_platform_yz = np.sum(np.broadcast_to(-ups_J_star_t_9, _ups))
+    J_star_ups_in_platform_zz = np.sum(np.broadcast_to(-ups_J_star_t_10, _ups))
+    b_c_ups_in_platform_x = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
+    b_c_ups_in_platform_y = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
+    b_c_ups_in_platform_z = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
+    # (tube-h_2) first moment of link 2 about the origin of link 2
+    tube_h_2_in_spec2_x = tube_link2_centre_of_mass_x*tube_link2_mass
+    tube_h_2_in_spec2_y = tube_link2_centre_of_mass_y*tube_link2_mass
+    tube_h_2_in_spec2_z = tube_link2_centre_of_mass_z*tube_link2_mass
     # (tube-h_3) first moment of link 3 about the origin of link 3
-    tube_h_3_x = tube_link3_centre_of_mass_x*tube_link3_mass
-    tube_h_3_y = tube_link3_centre_of_mass_y*tube_link3_mass
-    tube_h_3_z = tube_link3_centre_of_mass_z*tube_link3_mass
-    # (tube-J_2) inertia tensor of link 2 about the origin of link 2
-    tube_J_2_t = tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_x
-    tube_J_2_t_2 = tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_y
-    tube_J_2_t_3 = tube_link2_centre_of_mass_z*tube_link2_centre_of_mass_z
-    tube_J_2_t_4 = tube_J_2_t + tube_J_2_t_2 + tube_J_2_t_3
-    # (tube-J_3) inertia tensor of link 3 about the origin of link 3
-    tube_J_3_t = tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_x
-    tube_J_3_t_2 = tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_y
-    tube_J_3_t_3 = tube_link3_centre_of_mass_z*tube_link3_centre_of_mass_z
-    tube_J_3_t_4 = tube_J_3_t + tube_J_3_t_2 + tube_J_3_t_3
-    # (tube-J_group_2) inertia of the links that turn with link 2, each about its reference point
-    tube_J_group_2_xx = (
-    tube_link2_inertia_xx + tube_link3_inertia_xx - tube_link2_mass*(tube_J_2_t - tube_J_2_t_4) -
-        tube_link3_mass*(tube_J_3_t - tube_J_3_t_4)
+    tube_h_3_in_spec2_x = tube_link3_centre_of_mass_x*tube_link3_mass
+    tube_h_3_in_spec2_y = tube_link3_centre_of_mass_y*tube_link3_mass
+    tube_h_3_in_spec2_z = tube_link3_centre_of_mass_z*tube_link3_mass
+    # (tube-acc_3) acceleration of the reference point of link 3, less gravity
+    tube_acc_3_t = (
+    gravity_x*tube_base_frame_xx + gravity_y*tube_base_frame_yx + gravity_z*tube_base_frame_zx
     )
-    tube_J_group_2_xy = (
+    tube_acc_3_t_2 = (
+    gravity_x*tube_base_frame_xy + gravity_y*tube_base_frame_yy + gravity_z*tube_base_frame_zy
+    )
+    tube_acc_3_t_3 = (
+    gravity_x*tube_base_frame_xz + gravity_y*tube_base_frame_yz + gravity_z*tube_base_frame_zz
+    )
+    # (tube-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    tube_J_group_2_t = tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_x
+    tube_J_group_2_t_2 = tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_y
+    tube_J_group_2_t_3 = tube_link2_centre_of_mass_z*tube_link2_centre_of_mass_z
+    tube_J_group_2_t_4 = tube_J_group_2_t + tube_J_group_2_t_2 + tube_J_group_2_t_3
+    tube_J_group_2_t_5 = tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_x
+    tube_J_group_2_t_6 = tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_y
+    tube_J_group_2_t_7 = tube_link3_centre_of_mass_z*tube_link3_centre_of_mass_z
+    tube_J_group_2_t_8 = tube_J_group_2_t_5 + tube_J_group_2_t_6 + tube_J_group_2_t_7
+    tube_J_group_2_in_axes2_xx = (
+    tube_link2_inertia_xx + tube_link3_inertia_xx - tube_link2_mass*(tube_J_group_2_t -
+        tube_J_group_2_t_4) - tube_link3_mass*(tube_J_group_2_t_5 - tube_J_group_2_t_8)
+    )
+    tube_J_group_2_in_axes2_xy = (
     tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_z*tube_link2_mass +
         tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_z*tube_link3_mass -
         tube_link2_inertia_xz - tube_link3_inertia_xz
     )
-    tube_J_group_2_xz = (
+    tube_J_group_2_in_axes2_xz = (
     tube_link2_inertia_xy + tube_link3_inertia_xy -
         tube_link2_centre_of_mass_x*tube_link2_centre_of_mass_y*tube_link2_mass -
         tube_link3_centre_of_mass_x*tube_link3_centre_of_mass_y*tube_link3_mass
     )
-    tube_J_group_2_yy = (
-    tube_link2_inertia_zz + tube_link3_inertia_zz - tube_link2_mass*(tube_J_2_t_3 - tube_J_2_t_4)
-        - tube_link3_mass*(tube_J_3_t_3 - tube_J_3_t_4)
+    tube_J_group_2_in_axes2_yy = (
+    tube_link2_inertia_zz + tube_link3_inertia_zz - tube_link2_mass*(tube_J_group_2_t_3 -
+        tube_J_group_2_t_4) - tube_link3_mass*(tube_J_group_2_t_7 - tube_J_group_2_t_8)
     )
-    tube_J_group_2_yz = (
+    tube_J_group_2_in_axes2_yz = (
     tube_link2_centre_of_mass_y*tube_link2_centre_of_mass_z*tube_link2_mass +
         tube_link3_centre_of_mass_y*tube_link3_centre_of_mass_z*tube_link3_mass -
         tube_link2_inertia_yz - tube_link3_inertia_yz
     )
-    tube_J_group_2_zz = (
-    tube_link2_inertia_yy + tube_link3_inertia_yy - tube_link2_mass*(tube_J_2_t_2 - tube_J_2_t_4)
-        - tube_link3_mass*(tube_J_3_t_2 - tube_J_3_t_4)
+    tube_J_group_2_in_axes2_zz = (
+    tube_link2_inertia_yy + tube_link3_inertia_yy - tube_link2_mass*(tube_J_group_2_t_2 -
+        tube_J_group_2_t_4) - tube_link3_mass*(tube_J_group_2_t_6 - tube_J_group_2_t_8)
     )
-    # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    tube_g_r0_x = (
-    gravity_x*tube_base_frame_xx + gravity_y*tube_base_frame_yx + gravity_z*tube_base_frame_zx
-    )
-    tube_g_r0_y = (
-    gravity_x*tube_base_frame_xy + gravity_y*tube_base_frame_yy + gravity_z*tube_base_frame_zy
-    )
-    tube_g_r0_z = (
-    gravity_x*tube_base_frame_xz + gravity_y*tube_base_frame_yz + gravity_z*tube_base_frame_zz
-    )
-    # (tube-h_2) first moment of link 2 about the origin of link 2
-    tube_h_2_x = tube_link2_centre_of_mass_x*tube_link2_mass
-    tube_h_2_y = tube_link2_centre_of_mass_y*tube_link2_mass
-    tube_h_2_z = tube_link2_centre_of_mass_z*tube_link2_mass
     # (tube-trace_J_2) half the trace of that inertia tensor
-    tube_trace_J_2 = 0.5*tube_J_group_2_xx + 0.5*tube_J_group_2_yy + 0.5*tube_J_group_2_zz
+    tube_trace_J_2 = (
+    0.5*tube_J_group_2_in_axes2_xx + 0.5*tube_J_group_2_in_axes2_yy +
+        0.5*tube_J_group_2_in_axes2_zz
+    )
     # (tube-Sigma_2) second moment of mass of the links that turn with link 2
-    tube_Sigma_2_xx = tube_trace_J_2 - tube_J_group_2_xx
-    tube_Sigma_2_yy = tube_trace_J_2 - tube_J_group_2_yy
-    tube_Sigma_2_zz = tube_trace_J_2 - tube_J_group_2_zz
+    tube_Sigma_2_in_axes2_xx = tube_trace_J_2 - tube_J_group_2_in_axes2_xx
+    tube_Sigma_2_in_axes2_yy = tube_trace_J_2 - tube_J_group_2_in_axes2_yy
+    tube_Sigma_2_in_axes2_zz = tube_trace_J_2 - tube_J_group_2_in_axes2_zz
     # (potential) potential energy
-    tube_b_r0_x = (
+    tube_potential_t = (
     tube_base_frame_xx*tube_base_point_x + tube_base_frame_yx*tube_base_point_y +
         tube_base_frame_zx*tube_base_point_z
     )
-    tube_b_r0_y = (
+    tube_potential_t_2 = (
     tube_base_frame_xy*tube_base_point_x + tube_base_frame_yy*tube_base_point_y +
         tube_base_frame_zy*tube_base_point_z
     )
-    tube_b_r0_z = (
+    tube_potential_t_3 = (
     tube_base_frame_xz*tube_base_point_x + tube_base_frame_yz*tube_base_point_y +
         tube_base_frame_zz*tube_base_point_z
     )
-    total_tube_x = np.sum(np.broadcast_to(tube_platform_point_x, _tube))
-    total_tube_y = np.sum(np.broadcast_to(tube_platform_point_y, _tube))
-    total_tube_z = np.sum(np.broadcast_to(tube_platform_point_z, _tube))
+    b_c_tube_in_platform_x = np.sum(np.broadcast_to(tube_platform_point_x, _tube))
+    b_c_tube_in_platform_y = np.sum(np.broadcast_to(tube_platform_point_y, _tube))
+    b_c_tube_in_platform_z = np.sum(np.broadcast_to(tube_platform_point_z, _tube))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_ups
+    m_star = m_star_ups + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_ups_x
-    h_star_y = h_star_t_2 + total_ups_y
-    h_star_z = h_star_t_3 + total_ups_z
+    h_star_in_platform_x = h_star_t + h_star_ups_in_platform_x
+    h_star_in_platform_y = h_star_t_2 + h_star_ups_in_platform_y
+    h_star_in_platform_z = h_star_t_3 + h_star_ups_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx
-    J_star_xy = platform_inertia_xy - J_star_t_6 - total_ups_xy
-    J_star_xz = platform_inertia_xz - J_star_t_7 - total_ups_xz
-    J_star_yy = platform_inertia_yy - J_star_t_8 - total_ups_yy
-    J_star_yz = platform_inertia_yz - J_star_t_9 - total_ups_yz
-    J_star_zz = platform_inertia_zz - J_star_t_10 - total_ups_zz
-    J_star_t_11 = J_star_xx - J_star_yy
+    J_star_in_platform_xx = J_star_ups_in_platform_xx + platform_inertia_xx - J_star_t_5
+    J_star_in_platform_xy = J_star_ups_in_platform_xy + platform_inertia_xy - J_star_t_6
+    J_star_in_platform_xz = J_star_ups_in_platform_xz + platform_inertia_xz - J_star_t_7
+    J_star_in_platform_yy = J_star_ups_in_platform_yy + platform_inertia_yy - J_star_t_8
+    J_star_in_platform_yz = J_star_ups_in_platform_yz + platform_inertia_yz - J_star_t_9
+    J_star_in_platform_zz = J_star_ups_in_platform_zz + platform_inertia_zz - J_star_t_10
+    J_star_t_11 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_12 = 0.5*J_star_t_11
-    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_13 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_14 = 0.5*J_star_t_13
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.25*total_tube_x + 0.25*total_ups_x_2
-    b_c_y = 0.25*total_tube_y + 0.25*total_ups_y_2
-    b_c_z = 0.25*total_tube_z + 0.25*total_ups_z_2
+    b_c_in_platform_x = 0.25*b_c_tube_in_platform_x + 0.25*b_c_ups_in_platform_x
+    b_c_in_platform_y = 0.25*b_c_tube_in_platform_y + 0.25*b_c_ups_in_platform_y
+    b_c_in_platform_z = 0.25*b_c_tube_in_platform_z + 0.25*b_c_ups_in_platform_z
     return {
         "dynamics": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-                J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-                h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12,
+                J_star_t_14, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-                    ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz,
+        (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+                    ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
+                    ups_J_group_2_in_axes2_zz, ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy,
+                    ups_Sigma_2_in_axes2_zz, ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_2_x,
-                    ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_platform_point_x,
-                    ups_platform_point_y, ups_platform_point_z,),
+                    ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y,
+                    ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
                 (_tube,
-        (tube_J_group_2_xx, tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yy,
-                    tube_J_group_2_yz, tube_J_group_2_zz, tube_Sigma_2_xx, tube_Sigma_2_yy,
-                    tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
-                    tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
-                    tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
-                    tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
-                    tube_g_r0_x, tube_g_r0_y, tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z,
-                    tube_h_3_x, tube_h_3_y, tube_h_3_z, tube_link3_mass,
-                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
-                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
-                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
-                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
-                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
-                    tube_platform_point_z,),
+        (tube_J_group_2_in_axes2_xx, tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz,
+                    tube_J_group_2_in_axes2_yy, tube_J_group_2_in_axes2_yz,
+                    tube_J_group_2_in_axes2_zz, tube_Sigma_2_in_axes2_xx,
+                    tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz, tube_acc_3_t,
+                    tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
+                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
+                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+                    tube_branch_1, tube_branch_2, tube_h_2_in_spec2_x, tube_h_2_in_spec2_y,
+                    tube_h_2_in_spec2_z, tube_h_3_in_spec2_x, tube_h_3_in_spec2_y,
+                    tube_h_3_in_spec2_z, tube_link3_mass, tube_platform_joint_rotation_xx,
+                    tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
+                    tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
+                    tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
+                    tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
+                    tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_12, J_star_t_14, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-                    ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+                    ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
+                    ups_J_group_2_in_axes2_zz, ups_base_frame_xx, ups_base_frame_xy,
+                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_tube,
-        (tube_J_group_2_xx, tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yy,
-                    tube_J_group_2_yz, tube_J_group_2_zz, tube_base_frame_xx, tube_base_frame_xy,
+        (tube_J_group_2_in_axes2_xx, tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz,
+                    tube_J_group_2_in_axes2_yy, tube_J_group_2_in_axes2_yz,
+                    tube_J_group_2_in_axes2_zz, tube_base_frame_xx, tube_base_frame_xy,
                     tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
                     tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
                     tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-                    tube_branch_1, tube_branch_2, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-                    tube_link3_mass, tube_platform_joint_rotation_xx,
+                    tube_branch_1, tube_branch_2, tube_h_3_in_spec2_x, tube_h_3_in_spec2_y,
+                    tube_h_3_in_spec2_z, tube_link3_mass, tube_platform_joint_rotation_xx,
                     tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
                     tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
                     tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
@@ -963,32 +974,38 @@ def _prepare(p):
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_tube,
-        (tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx,
-                    tube_Sigma_2_yy, tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy,
-                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
-                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
-                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-                    tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y, tube_g_r0_z,
-                    tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-                    tube_link3_mass, tube_platform_joint_rotation_xx,
-                    tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
-                    tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
-                    tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
-                    tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
-                    tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,),
+        (tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
+                    tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
+                    tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx,
+                    tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2, tube_h_2_in_spec2_x,
+                    tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+                    tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1039,32 +1056,38 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_tube,
-        (tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx,
-                    tube_Sigma_2_yy, tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy,
-                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
-                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
-                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-                    tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y, tube_g_r0_z,
-                    tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-                    tube_link3_mass, tube_platform_joint_rotation_xx,
-                    tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
-                    tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
-                    tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
-                    tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
-                    tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,),
+        (tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
+                    tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
+                    tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx,
+                    tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2, tube_h_2_in_spec2_x,
+                    tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+                    tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
@@ -1156,58 +1179,64 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
-                    ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link3_mass,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
                 (_tube,
-        (tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx,
-                    tube_Sigma_2_yy, tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy,
-                    tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
-                    tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
-                    tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-                    tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y, tube_g_r0_z,
-                    tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-                    tube_link3_mass, tube_platform_joint_rotation_xx,
-                    tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
-                    tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
-                    tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
-                    tube_platform_joint_rotation_zy, tube_platform_joint_rotation_zz,
-                    tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,),
+        (tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
+                    tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
+                    tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx,
+                    tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+                    tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
+                    tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
+                    tube_base_point_z, tube_branch_1, tube_branch_2, tube_h_2_in_spec2_x,
+                    tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+                    tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
+                    tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+                    tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
+                    tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
+                    tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
+                    tube_platform_joint_rotation_zz, tube_platform_point_x, tube_platform_point_y,
+                    tube_platform_point_z,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, m_star,),
             (
                 (_ups,
-        (ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+        (ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
                     ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
                     ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
-                    ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
-                    ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+                    ups_potential_t, ups_potential_t_2, ups_potential_t_3,),
                 ),
                 (_tube,
-        (tube_b_r0_x, tube_b_r0_y, tube_b_r0_z, tube_base_frame_xx, tube_base_frame_xy,
+        (tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
                     tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy,
                     tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
                     tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
-                    tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y, tube_g_r0_z,
-                    tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-                    tube_link2_mass, tube_link3_mass, tube_platform_point_x,
-                    tube_platform_point_y, tube_platform_point_z,),
+                    tube_branch_1, tube_branch_2, tube_h_2_in_spec2_x, tube_h_2_in_spec2_y,
+                    tube_h_2_in_spec2_z, tube_h_3_in_spec2_x, tube_h_3_in_spec2_y,
+                    tube_h_3_in_spec2_z, tube_link2_mass, tube_link3_mass, tube_platform_point_x,
+                    tube_platform_point_y, tube_platform_point_z, tube_potential_t,
+                    tube_potential_t_2, tube_potential_t_3,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z,),
             (
                 (_ups,
         (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -1729,9 +1758,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_12, J_star_t_14, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1788,73 +1818,92 @@ def _run_dynamics(m, X, V):
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-            ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz, ups_base_frame_xx,
-            ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-            ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-            ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-            ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x,
-            ups_h_3_y, ups_h_3_z, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+        ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+            ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -1867,280 +1916,295 @@ def _run_dynamics(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
-        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
-        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
-        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
-        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
-        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_yy = (
-        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
-        )
-        ups_d_c_yz = (
-        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
-            inv_ups_root_2*ups_J_group_2_yz)
-        )
-        ups_d_c_zz = (
-        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
-            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy))
-        )
-        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        ups_Q_t = 0.5*ups_d_c_yy
-        ups_Q_t_2 = 0.5*ups_d_c_zz
-        ups_Q_t_3 = (
-        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
-            ups_axis_x_x*ups_d_phi_3_t
-        )
-        ups_Q_t_4 = (
-        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
-            ups_axis_x_y*ups_d_phi_3_t
-        )
-        ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
-            ups_axis_x_z*ups_d_phi_3_t
-        )
-        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
-        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
-        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
-        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
-        ups_Q_t_10 = 2.0*ups_Q_t_9
-        ups_Q_t_11 = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
-        )
-        ups_Q_t_12 = (
-        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
-        )
-        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
-        ups_Q_t_14 = 2.0*ups_Q_t_13
-        ups_Q_t_15 = (
-        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
-        )
-        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
-        ups_Q_t_17 = 2.0*ups_Q_t_16
-        # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z
-        ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y
-        ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2
-        ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x
-        ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x
-        ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y
-        ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x
-        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
-        ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x
-        ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y
-        ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x
-        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
-        # (M_aa) rotational block of M
-        ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y
-        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y
-        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z
-        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x
-        ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z
-        ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-u_1) centripetal acceleration of the connection point
         ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        ups_u_1_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_u_1_x + axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z
+        )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-u_1) centripetal acceleration of the connection point
-        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
-        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
-        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
-        ups_u_1_tip_z = (
-        axis_z_ups_axes2_in_base_x*ups_u_1_x + axis_z_ups_axes2_in_base_y*ups_u_1_y +
-            axis_z_ups_axes2_in_base_z*ups_u_1_z
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        ups_rel_o_z = ups_u_1_tip_z - ups_bias_z
-        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        ups_qdd_2_o_t = (
-        inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z
+        ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
+        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
+        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2
+        ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x
-        ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y
+        ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
+        ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_xy = -2.0*ups_W_2_xy - ups_qdd_2_o_t
-        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
-        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
-        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_x = (
-        -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 +
-            ups_W_2_t_3)
+        ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_B_2_o_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
         )
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
+        ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
+        ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        ups_acc_3_o_x = (
-        ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y + ups_axis_x_z*ups_u_1_z - ups_g_r3_x
+        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2
+        ups_acc_3_o_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
+            - ups_g_in_axes2_x
         )
-        ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y
-        ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x
+        ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
+        ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
+        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
+        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_o_in_axes2_x = (
+        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
+            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
         # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_x = (
-        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z
+        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_o_in_axes2_x = (
+        ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_o_y = (
-        ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
-            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y
+        ups_mu_2_o_in_axes2_y = (
+        ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_o_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_o_t +
-            ups_Sigma_2_xx*ups_qdd_2_o_t + ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x -
-            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_o_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x
+        ups_mu_2_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
+            ups_phi_3_o_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+            - ups_g_in_axes2_y*ups_h_2_in_spec2_x
+        )
+        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_yy = (
+        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
+            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
+        )
+        ups_d_c_in_axes2_yz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
+        )
+        ups_d_c_in_axes2_zz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
+            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
+            inv_ups_root_2*ups_J_group_2_in_axes2_xy))
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_c_o_y = (
-        ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z - ups_h_3_x*ups_qdd_2_o_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_o_in_axes2_y = (
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+            ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
+            ups_phi_3_o_t_2)
         )
-        ups_c_o_z = (
-        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
+        ups_c_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
+            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
+        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
+        ups_Q_t = 0.5*ups_d_c_in_axes2_yy
+        ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
+        ups_Q_t_3 = (
+        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        )
+        ups_Q_t_4 = (
+        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        )
+        ups_Q_t_5 = (
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        )
+        ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
+        ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
+        ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
+        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
+        ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_xy = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
+            - axis_z_ups_axes2_y*ups_Q_t_6
+        )
+        ups_Q_xz = (
+        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_6
+        )
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_yz = (
+        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_7
+        )
+        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
+        ups_Q_zz = -2.0*ups_Q_t_11
         # (ups-U) velocity and gravity terms of the leg force
-        ups_U_in_base_x = (
-        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z
+        ups_U_x = (
+        axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_x*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_y = (
-        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        ups_U_y = (
+        axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_y*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_y*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_z = (
-        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        ups_U_z = (
+        axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_z*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
+        # (M_ta) coupling block of M
+        ups_M_ta_t = ups_Q_xy*ups_q_z
+        ups_M_ta_t_2 = ups_Q_xz*ups_q_y
+        ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t
+        ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x
+        ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
+        ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
+        ups_M_ta_t_7 = ups_Q_yz*ups_q_x
+        ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
+        ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
+        ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
+        ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
+        ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
+        # (M_aa) rotational block of M
+        ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z
+        ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y - ups_M_ta_t_8*ups_q_z
+        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z
+        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x
+        ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
+        ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
         # (Z_a) rotational part of Z
-        ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z
-        ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z - ups_U_in_base_z*ups_q_in_base_x
-        ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x - ups_U_in_base_x*ups_q_in_base_y
+        ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z
+        ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
+        ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
-        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
-        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z
+        ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
+        ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
             _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17, ups_M_ta_t_3,
+        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_M_ta_t_3,
             ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
             ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
-            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_in_base_x,
-            ups_U_in_base_y, ups_U_in_base_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
+            ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6, ups_U_x, ups_U_y, ups_U_z,
+            ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
     (
-    total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
-        total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
-        total_ups_yz_2, total_ups_zx, total_ups_zy, total_ups_zz_2, total_ups_xx_3,
-        total_ups_xy_3, total_ups_xz_3, total_ups_yy_3, total_ups_yz_3, total_ups_zz_3,
-        total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2,
+    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
+        M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
+        M_ta_ups_zz, M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
+        Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z,
     ) = sums
     sums = [0.0] * 27
     for leg, k in legs[1]:
         (
-        tube_J_group_2_xx, tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yy,
-            tube_J_group_2_yz, tube_J_group_2_zz, tube_Sigma_2_xx, tube_Sigma_2_yy,
-            tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
-            tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
-            tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
-            tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y,
-            tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-            tube_link3_mass, tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+        tube_J_group_2_in_axes2_xx, tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz,
+            tube_J_group_2_in_axes2_yy, tube_J_group_2_in_axes2_yz, tube_J_group_2_in_axes2_zz,
+            tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
+            tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
+            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
+            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
+            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
+            tube_h_2_in_spec2_x, tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+            tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
+            tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
             tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
             tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
             tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
@@ -2148,18 +2212,18 @@ def _run_dynamics(m, X, V):
             tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -2172,53 +2236,68 @@ def _run_dynamics(m, X, V):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_S_dot_t = tube_s_1*tube_s_2
+        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_xy
         )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_yy
         )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_zy
         )
         axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
         )
         axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
         )
         axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -2246,107 +2325,141 @@ def _run_dynamics(m, X, V):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_z = (
+        tube_n_m1_t_12 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
-        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
-        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
+        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_x = (
+        tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_y = (
+        tube_n_m2_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_z = (
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
-        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_z = (
+        tube_n_m3_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
-        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
-        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
+        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
+        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
-        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
+        tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
+        tube_mu_c1_in_axes2_z = (
+        -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
+        )
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
+        tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
+        tube_mu_c2_in_axes2_z = (
+        tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_in_axes2_x = (
+        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        )
+        tube_mu_c3_in_axes2_y = (
+        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        )
+        tube_mu_c3_in_axes2_z = (
+        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c3_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z
+        )
+        tube_mu_c3_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z
+        )
+        tube_mu_c3_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
+        )
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
-        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
-        tube_w_1_t_8 = 1.35*tube_f_c2_t
-        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
         tube_w_1_t_12 = 1.35*tube_mu3_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -2367,10 +2480,10 @@ def _run_dynamics(m, X, V):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -2393,23 +2506,23 @@ def _run_dynamics(m, X, V):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -2417,12 +2530,12 @@ def _run_dynamics(m, X, V):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -2437,975 +2550,1100 @@ def _run_dynamics(m, X, V):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
-        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
-        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
-        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
-        tube_w_1_t_81 = inv_tube_w_1_t_157*tube_w_1_t_76
-        tube_w_1_t_82 = inv_tube_w_1_t_157*tube_w_1_t_77
-        tube_w_1_t_83 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_78
-        tube_w_1_t_84 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_79
-        tube_w_1_t_85 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_80
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76
+        tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77
+        tube_w_1_t_78 = -tube_c_2*tube_w_1_in_axes2_y
+        # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
+        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_m1_w_1 = 1.35*inv_tube_w_1_t_75*tube_m1_w_1_t
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_m2_w_1 = 1.35*inv_tube_w_1_t_75*tube_m2_w_1_t
+        # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
+        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_m3_w_1 = 1.35*inv_tube_w_1_t_75*tube_m3_w_1_t
         # (tube-w_2) force part of reciprocal wrench 2
-        tube_w_2_t = inv_tube_w_1_t_16*inv_tube_w_1_t_57*tube_w_1_t_17
+        tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17
         tube_w_2_t_2 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_16*tube_w_1_t_21 - tube_w_1_t_37*tube_w_2_t)
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 - tube_w_1_t_37*tube_w_2_t)
         )
         tube_w_2_t_3 = (
-        inv_tube_w_1_t_129*(tube_w_1_t_41*tube_w_2_t + tube_w_1_t_53*tube_w_2_t_2 -
-            inv_tube_w_1_t_16*tube_w_1_t_25)
+        inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t + tube_w_1_t_53*tube_w_2_t_2 -
+            inv_tube_w_1_t_13*tube_w_1_t_25)
         )
         tube_w_2_t_4 = (
-        inv_tube_w_1_t_157*(inv_tube_w_1_t_16*tube_w_1_t_29 + tube_w_1_t_69*tube_w_2_t_3 -
+        inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 + tube_w_1_t_69*tube_w_2_t_3 -
             tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2)
         )
-        tube_w_2_t_5 = (
-        inv_tube_w_1_t_16*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 +
+        tube_w_2_in_axes2_y = (
+        inv_tube_w_1_t_13*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 +
             tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4
         )
-        tube_w_2_t_6 = (
-        inv_tube_w_1_t_95*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4
+        tube_w_2_in_axes2_z = (
+        inv_tube_w_1_t_49*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4
         )
-        tube_w_2_t_7 = (
-        inv_tube_w_1_t_16*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t + tube_w_1_t_51*tube_w_2_t_2 +
-            tube_w_1_t_66*tube_w_2_t_3 - tube_w_1_t_78*tube_w_2_t_4
+        # (tube-m1_w_2) moment part 1 of reciprocal wrench 2
+        tube_m1_w_2_t = (
+        inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t + tube_w_1_t_51*tube_w_2_t_2 +
+            tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4
         )
-        tube_w_2_t_8 = 1.35*tube_w_2_t_7
-        tube_w_2_t_9 = tube_w_1_t_67*tube_w_2_t_3 + tube_w_1_t_79*tube_w_2_t_4
-        tube_w_2_t_10 = 1.35*tube_w_2_t_9
-        tube_w_2_t_11 = (
-        inv_tube_w_1_t_16*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
-            tube_w_1_t_68*tube_w_2_t_3 - tube_w_1_t_80*tube_w_2_t_4
+        tube_m1_w_2 = 1.35*tube_m1_w_2_t
+        # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
+        tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3
+        tube_m2_w_2 = -1.35*tube_m2_w_2_t
+        # (tube-m3_w_2) moment part 3 of reciprocal wrench 2
+        tube_m3_w_2_t = (
+        inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
+            tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4
         )
-        tube_w_2_t_12 = 1.35*tube_w_2_t_11
-        # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t_86 = tube_s_2*tube_w_1_t_81
-        tube_w_1_t_87 = tube_c_2*tube_w_1_t_81
-        # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_d_alpha_1_xz = tube_s_2*tube_w_1_t_82
-        tube_d_alpha_1_yz = tube_c_2*tube_w_1_t_82
-        # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_d_acc_3_t = tube_root_2*tube_w_2_t_5
-        tube_d_acc_3_t_2 = tube_root_2*tube_w_2_t_6
-        tube_d_acc_3_t_3 = tube_root_2*tube_w_1_t_87
-        tube_d_acc_3_t_4 = tube_d_alpha_1_yz*tube_root_2
-        # (tube-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        tube_d_phi_3_t = tube_h_3_y*tube_w_1_t_87 - tube_h_3_z*tube_w_2_t_5
-        tube_d_phi_3_t_2 = tube_d_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_w_2_t_6
-        # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_d_N_2_zy = (
-        tube_J_group_2_xz*tube_w_1_t_86 + tube_J_group_2_zz*tube_w_2_t_5 +
-            tube_d_acc_3_t*tube_h_3_x + tube_root_2*(tube_d_acc_3_t*tube_link3_mass +
-            tube_h_3_x*tube_w_2_t_5 - tube_h_3_y*tube_w_1_t_86) - tube_J_group_2_yz*tube_w_1_t_87
-        )
-        tube_d_N_2_zz = (
-        tube_J_group_2_xz*tube_d_alpha_1_xz + tube_J_group_2_zz*tube_w_2_t_6 +
-            tube_d_acc_3_t_2*tube_h_3_x + tube_root_2*(tube_d_acc_3_t_2*tube_link3_mass +
-            tube_h_3_x*tube_w_2_t_6 - tube_d_alpha_1_xz*tube_h_3_y) -
-            tube_J_group_2_yz*tube_d_alpha_1_yz
-        )
-        # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        tube_d_Gamma_1_t = tube_c_2*tube_h_3_y
-        tube_d_Gamma_1_t_2 = (
-        tube_c_2*(tube_J_group_2_xy*tube_w_1_t_86 + tube_J_group_2_yz*tube_w_2_t_5 -
-            tube_J_group_2_yy*tube_w_1_t_87 - tube_d_acc_3_t_3*tube_h_3_x -
-            tube_root_2*(tube_d_acc_3_t_3*tube_link3_mass + tube_h_3_x*tube_w_1_t_87 -
-            tube_h_3_z*tube_w_1_t_86))
-        )
-        tube_d_Gamma_1_y = (
-        tube_s_2*(tube_J_group_2_xx*tube_w_1_t_86 + tube_J_group_2_xz*tube_w_2_t_5 -
-            tube_J_group_2_xy*tube_w_1_t_87 - tube_d_acc_3_t*tube_h_3_y -
-            tube_d_acc_3_t_3*tube_h_3_z) - tube_d_Gamma_1_t_2
-        )
-        tube_d_Gamma_1_t_3 = (
-        tube_c_2*(tube_J_group_2_xy*tube_d_alpha_1_xz + tube_J_group_2_yz*tube_w_2_t_6 -
-            tube_J_group_2_yy*tube_d_alpha_1_yz - tube_d_acc_3_t_4*tube_h_3_x -
-            tube_root_2*(tube_d_acc_3_t_4*tube_link3_mass + tube_d_alpha_1_yz*tube_h_3_x -
-            tube_d_alpha_1_xz*tube_h_3_z))
-        )
-        tube_d_Gamma_1_z = (
-        tube_s_2*(tube_J_group_2_xx*tube_d_alpha_1_xz + tube_J_group_2_xz*tube_w_2_t_6 -
-            tube_J_group_2_xy*tube_d_alpha_1_yz - tube_d_acc_3_t_2*tube_h_3_y -
-            tube_d_acc_3_t_4*tube_h_3_z) - tube_d_Gamma_1_t_3
-        )
-        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_d_G_yz = tube_d_Gamma_1_z*tube_w_1_t_81 + tube_d_N_2_zz*tube_w_2_t_5
-        # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
-        tube_Q_t = tube_d_Gamma_1_y*tube_w_1_t_81 + tube_d_N_2_zy*tube_w_2_t_5 - tube_link3_mass
-        tube_Q_t_2 = 0.5*tube_Q_t
-        tube_Q_t_3 = tube_d_Gamma_1_z*tube_w_1_t_82 + tube_d_N_2_zz*tube_w_2_t_6 - tube_link3_mass
-        tube_Q_t_4 = 0.5*tube_Q_t_3
-        tube_Q_t_5 = (
-        axis_y_tube_axes2_in_base_x*tube_Q_t_2 + axis_z_tube_axes2_in_base_x*tube_d_G_yz -
-            axis_x_tube_axes2_x*tube_d_phi_3_t
-        )
-        tube_Q_t_6 = (
-        axis_y_tube_axes2_in_base_y*tube_Q_t_2 + axis_z_tube_axes2_in_base_y*tube_d_G_yz -
-            axis_x_tube_axes2_y*tube_d_phi_3_t
-        )
-        tube_Q_t_7 = (
-        axis_y_tube_axes2_in_base_z*tube_Q_t_2 + axis_z_tube_axes2_in_base_z*tube_d_G_yz -
-            axis_x_tube_axes2_z*tube_d_phi_3_t
-        )
-        tube_Q_t_8 = axis_z_tube_axes2_in_base_x*tube_Q_t_4 - axis_x_tube_axes2_x*tube_d_phi_3_t_2
-        tube_Q_t_9 = axis_z_tube_axes2_in_base_y*tube_Q_t_4 - axis_x_tube_axes2_y*tube_d_phi_3_t_2
-        tube_Q_t_10 = (
-        axis_z_tube_axes2_in_base_z*tube_Q_t_4 - axis_x_tube_axes2_z*tube_d_phi_3_t_2
-        )
-        tube_Q_t_11 = (
-        axis_y_tube_axes2_in_base_x*tube_Q_t_5 + axis_z_tube_axes2_in_base_x*tube_Q_t_8
-        )
-        tube_Q_t_12 = 2.0*tube_Q_t_11 + tube_link3_mass
-        tube_Q_t_13 = (
-        axis_y_tube_axes2_in_base_x*tube_Q_t_6 + axis_y_tube_axes2_in_base_y*tube_Q_t_5 +
-            axis_z_tube_axes2_in_base_x*tube_Q_t_9 + axis_z_tube_axes2_in_base_y*tube_Q_t_8
-        )
-        tube_Q_t_14 = (
-        axis_y_tube_axes2_in_base_x*tube_Q_t_7 + axis_y_tube_axes2_in_base_z*tube_Q_t_5 +
-            axis_z_tube_axes2_in_base_x*tube_Q_t_10 + axis_z_tube_axes2_in_base_z*tube_Q_t_8
-        )
-        tube_Q_t_15 = (
-        axis_y_tube_axes2_in_base_y*tube_Q_t_6 + axis_z_tube_axes2_in_base_y*tube_Q_t_9
-        )
-        tube_Q_t_16 = 2.0*tube_Q_t_15 + tube_link3_mass
-        tube_Q_t_17 = (
-        axis_y_tube_axes2_in_base_y*tube_Q_t_7 + axis_y_tube_axes2_in_base_z*tube_Q_t_6 +
-            axis_z_tube_axes2_in_base_y*tube_Q_t_10 + axis_z_tube_axes2_in_base_z*tube_Q_t_9
-        )
-        tube_Q_t_18 = (
-        axis_y_tube_axes2_in_base_z*tube_Q_t_7 + axis_z_tube_axes2_in_base_z*tube_Q_t_10
-        )
-        tube_Q_t_19 = 2.0*tube_Q_t_18 + tube_link3_mass
-        # (tube-o_2) moment part of reciprocal wrench 2
-        tube_o_2_x = tube_end_p2_r3_y*tube_w_2_t_10 - tube_end_p3_r1_x*tube_w_2_t_12
-        tube_o_2_y = -tube_end_p1_r1_x*tube_w_2_t_8 - tube_end_p2_r3_x*tube_w_2_t_10
-        tube_o_2_z = tube_end_p1_r3_y*tube_w_2_t_8 + tube_end_p3_r3_x*tube_w_2_t_12
+        tube_m3_w_2 = 1.35*tube_m3_w_2_t
         # (tube-o_1) moment part of reciprocal wrench 1
-        tube_o_1_x = -tube_end_p2_r3_y*tube_w_1_t_84 - tube_end_p3_r1_x*tube_w_1_t_85
-        tube_o_1_y = tube_end_p2_r3_x*tube_w_1_t_84 - tube_end_p1_r1_x*tube_w_1_t_83
-        tube_o_1_z = tube_end_p1_r3_y*tube_w_1_t_83 + tube_end_p3_r3_x*tube_w_1_t_85
-        tube_o_1_t = tube_c_2*tube_o_1_x
-        tube_o_1_t_2 = tube_o_1_y*tube_s_2
-        tube_o_1_t_3 = tube_c_2*tube_o_1_y
-        tube_o_1_t_4 = tube_o_1_x*tube_s_2
-        # (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_dalpha_alpha_1_xz = tube_o_1_z*tube_s_2
-        tube_dalpha_alpha_1_yz = tube_c_2*tube_o_1_z
-        # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_dalpha_acc_3_t = tube_o_2_x*tube_root_2
-        tube_dalpha_acc_3_t_2 = tube_o_2_y*tube_root_2
-        tube_dalpha_acc_3_t_3 = tube_o_2_z*tube_root_2
-        tube_dalpha_acc_3_t_4 = tube_o_1_t*tube_root_2
-        tube_dalpha_acc_3_t_5 = tube_o_1_t_3*tube_root_2
-        tube_dalpha_acc_3_t_6 = tube_dalpha_alpha_1_yz*tube_root_2
-        # (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        tube_dalpha_phi_3_t = tube_h_3_y*tube_o_1_t - tube_h_3_z*tube_o_2_x
-        tube_dalpha_phi_3_t_2 = tube_h_3_y*tube_o_1_t_3 - tube_h_3_z*tube_o_2_y
-        tube_dalpha_phi_3_t_3 = tube_dalpha_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_o_2_z
-        # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_dalpha_N_2_zx = (
-        tube_J_group_2_xz*tube_o_1_t_4 + tube_J_group_2_zz*tube_o_2_x +
-            tube_dalpha_acc_3_t*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t*tube_link3_mass +
-            tube_h_3_x*tube_o_2_x - tube_h_3_y*tube_o_1_t_4) - tube_J_group_2_yz*tube_o_1_t
+        tube_o_1_in_axes2_x = (
+        -tube_end_p2_in_axes2_y*tube_m2_w_1 - tube_end_p3_in_axes2_z*tube_m3_w_1
         )
-        tube_dalpha_N_2_zy = (
-        tube_J_group_2_xz*tube_o_1_t_2 + tube_J_group_2_zz*tube_o_2_y +
-            tube_dalpha_acc_3_t_2*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t_2*tube_link3_mass
-            + tube_h_3_x*tube_o_2_y - tube_h_3_y*tube_o_1_t_2) - tube_J_group_2_yz*tube_o_1_t_3
+        tube_o_1_in_axes2_y = (
+        tube_m2_w_1*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_m1_w_1
         )
-        tube_dalpha_N_2_zz = (
-        tube_J_group_2_xz*tube_dalpha_alpha_1_xz + tube_J_group_2_zz*tube_o_2_z +
-            tube_dalpha_acc_3_t_3*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t_3*tube_link3_mass
-            + tube_h_3_x*tube_o_2_z - tube_dalpha_alpha_1_xz*tube_h_3_y) -
-            tube_J_group_2_yz*tube_dalpha_alpha_1_yz
+        tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z + tube_m3_w_1*tube_n_m3_in_axes2_z
+        # (tube-o_2) moment part of reciprocal wrench 2
+        tube_o_2_in_axes2_x = (
+        -tube_end_p2_in_axes2_y*tube_m2_w_2 - tube_end_p3_in_axes2_z*tube_m3_w_2
         )
-        # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        tube_dalpha_Gamma_1_t = (
-        tube_c_2*(tube_J_group_2_xy*tube_o_1_t_4 + tube_J_group_2_yz*tube_o_2_x -
-            tube_J_group_2_yy*tube_o_1_t - tube_dalpha_acc_3_t_4*tube_h_3_x -
-            tube_root_2*(tube_dalpha_acc_3_t_4*tube_link3_mass + tube_h_3_x*tube_o_1_t -
-            tube_h_3_z*tube_o_1_t_4))
+        tube_o_2_in_axes2_y = (
+        tube_m2_w_2*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_m1_w_2
         )
-        tube_dalpha_Gamma_1_x = (
-        tube_s_2*(tube_J_group_2_xx*tube_o_1_t_4 + tube_J_group_2_xz*tube_o_2_x -
-            tube_J_group_2_xy*tube_o_1_t - tube_dalpha_acc_3_t*tube_h_3_y -
-            tube_dalpha_acc_3_t_4*tube_h_3_z) - tube_dalpha_Gamma_1_t
-        )
-        tube_dalpha_Gamma_1_t_2 = (
-        tube_c_2*(tube_J_group_2_xy*tube_o_1_t_2 + tube_J_group_2_yz*tube_o_2_y -
-            tube_J_group_2_yy*tube_o_1_t_3 - tube_dalpha_acc_3_t_5*tube_h_3_x -
-            tube_root_2*(tube_dalpha_acc_3_t_5*tube_link3_mass + tube_h_3_x*tube_o_1_t_3 -
-            tube_h_3_z*tube_o_1_t_2))
-        )
-        tube_dalpha_Gamma_1_y = (
-        tube_s_2*(tube_J_group_2_xx*tube_o_1_t_2 + tube_J_group_2_xz*tube_o_2_y -
-            tube_J_group_2_xy*tube_o_1_t_3 - tube_dalpha_acc_3_t_2*tube_h_3_y -
-            tube_dalpha_acc_3_t_5*tube_h_3_z) - tube_dalpha_Gamma_1_t_2
-        )
-        tube_dalpha_Gamma_1_t_3 = (
-        tube_c_2*(tube_J_group_2_xy*tube_dalpha_alpha_1_xz + tube_J_group_2_yz*tube_o_2_z -
-            tube_J_group_2_yy*tube_dalpha_alpha_1_yz - tube_dalpha_acc_3_t_6*tube_h_3_x -
-            tube_root_2*(tube_dalpha_acc_3_t_6*tube_link3_mass + tube_dalpha_alpha_1_yz*tube_h_3_x
-            - tube_dalpha_alpha_1_xz*tube_h_3_z))
-        )
-        tube_dalpha_Gamma_1_z = (
-        tube_s_2*(tube_J_group_2_xx*tube_dalpha_alpha_1_xz + tube_J_group_2_xz*tube_o_2_z -
-            tube_J_group_2_xy*tube_dalpha_alpha_1_yz - tube_dalpha_acc_3_t_3*tube_h_3_y -
-            tube_dalpha_acc_3_t_6*tube_h_3_z) - tube_dalpha_Gamma_1_t_3
-        )
-        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_yx = tube_dalpha_Gamma_1_x*tube_w_1_t_81 + tube_dalpha_N_2_zx*tube_w_2_t_5
-        tube_dalpha_G_yy = tube_dalpha_Gamma_1_y*tube_w_1_t_81 + tube_dalpha_N_2_zy*tube_w_2_t_5
-        tube_dalpha_G_yz = tube_dalpha_Gamma_1_z*tube_w_1_t_81 + tube_dalpha_N_2_zz*tube_w_2_t_5
-        tube_dalpha_G_zx = tube_dalpha_Gamma_1_x*tube_w_1_t_82 + tube_dalpha_N_2_zx*tube_w_2_t_6
-        tube_dalpha_G_zy = tube_dalpha_Gamma_1_y*tube_w_1_t_82 + tube_dalpha_N_2_zy*tube_w_2_t_6
-        tube_dalpha_G_zz = tube_dalpha_Gamma_1_z*tube_w_1_t_82 + tube_dalpha_N_2_zz*tube_w_2_t_6
-        # (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        tube_dalpha_c_in_base_x = (
-        axis_x_tube_axes2_x*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zx
-        )
-        tube_dalpha_c_in_base_y = (
-        axis_x_tube_axes2_y*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zx
-        )
-        tube_dalpha_c_in_base_z = (
-        axis_x_tube_axes2_z*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zx
-        )
-        tube_dalpha_c_in_base_x_2 = (
-        axis_x_tube_axes2_x*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zy
-        )
-        tube_dalpha_c_in_base_y_2 = (
-        axis_x_tube_axes2_y*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zy
-        )
-        tube_dalpha_c_in_base_z_2 = (
-        axis_x_tube_axes2_z*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zy
-        )
-        tube_dalpha_c_in_base_x_3 = (
-        axis_x_tube_axes2_x*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zz
-        )
-        tube_dalpha_c_in_base_y_3 = (
-        axis_x_tube_axes2_y*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zz
-        )
-        tube_dalpha_c_in_base_z_3 = (
-        axis_x_tube_axes2_z*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zz
-        )
-        # (M_ta) coupling block of M
-        tube_M_ta_t = tube_Q_t_13*tube_q_in_base_z
-        tube_M_ta_t_2 = tube_Q_t_14*tube_q_in_base_y
-        tube_M_ta_t_3 = tube_Q_t_17*tube_q_in_base_x
-        tube_M_ta_t_4 = (
-        tube_M_ta_t + axis_x_tube_axes2_x*tube_dalpha_c_in_base_x +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_3 - tube_M_ta_t_2
-        )
-        tube_M_ta_t_5 = (
-        tube_Q_t_12*tube_q_in_base_z - axis_x_tube_axes2_y*tube_dalpha_c_in_base_x -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_3 - tube_Q_t_14*tube_q_in_base_x
-        )
-        tube_M_ta_t_6 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_3 + tube_Q_t_12*tube_q_in_base_y -
-            tube_Q_t_13*tube_q_in_base_x
-        )
-        tube_M_ta_t_7 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_base_y +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_3 + tube_Q_t_16*tube_q_in_base_z -
-            tube_Q_t_17*tube_q_in_base_y
-        )
-        tube_M_ta_t_8 = (
-        tube_M_ta_t - tube_M_ta_t_3 - axis_x_tube_axes2_y*tube_dalpha_c_in_base_y -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_3
-        )
-        tube_M_ta_t_9 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_3 + tube_Q_t_13*tube_q_in_base_y -
-            tube_Q_t_16*tube_q_in_base_x
-        )
-        tube_M_ta_t_10 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_base_z +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_3 + tube_Q_t_17*tube_q_in_base_z -
-            tube_Q_t_19*tube_q_in_base_y
-        )
-        tube_M_ta_t_11 = (
-        tube_Q_t_14*tube_q_in_base_z - axis_x_tube_axes2_y*tube_dalpha_c_in_base_z -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_3 - tube_Q_t_19*tube_q_in_base_x
-        )
-        tube_M_ta_t_12 = (
-        tube_M_ta_t_3 - tube_M_ta_t_2 - axis_x_tube_axes2_z*tube_dalpha_c_in_base_z -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_2 -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_3
-        )
-        # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_m1_x = tube_dalpha_Gamma_1_x*tube_w_1_t_83 + tube_dalpha_N_2_zx*tube_w_2_t_8
-        tube_dalpha_G_m1_y = tube_dalpha_Gamma_1_y*tube_w_1_t_83 + tube_dalpha_N_2_zy*tube_w_2_t_8
-        tube_dalpha_G_m1_z = tube_dalpha_Gamma_1_z*tube_w_1_t_83 + tube_dalpha_N_2_zz*tube_w_2_t_8
-        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_m2_x = (
-        tube_dalpha_Gamma_1_x*tube_w_1_t_84 - tube_dalpha_N_2_zx*tube_w_2_t_10
-        )
-        tube_dalpha_G_m2_y = (
-        tube_dalpha_Gamma_1_y*tube_w_1_t_84 - tube_dalpha_N_2_zy*tube_w_2_t_10
-        )
-        tube_dalpha_G_m2_z = (
-        tube_dalpha_Gamma_1_z*tube_w_1_t_84 - tube_dalpha_N_2_zz*tube_w_2_t_10
-        )
-        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_m3_x = (
-        tube_dalpha_Gamma_1_x*tube_w_1_t_85 + tube_dalpha_N_2_zx*tube_w_2_t_12
-        )
-        tube_dalpha_G_m3_y = (
-        tube_dalpha_Gamma_1_y*tube_w_1_t_85 + tube_dalpha_N_2_zy*tube_w_2_t_12
-        )
-        tube_dalpha_G_m3_z = (
-        tube_dalpha_Gamma_1_z*tube_w_1_t_85 + tube_dalpha_N_2_zz*tube_w_2_t_12
-        )
-        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_m_xx = (
-        -tube_dalpha_G_m2_x*tube_end_p2_r3_y - tube_dalpha_G_m3_x*tube_end_p3_r1_x
-        )
-        tube_dalpha_G_m_xy = (
-        -tube_dalpha_G_m2_y*tube_end_p2_r3_y - tube_dalpha_G_m3_y*tube_end_p3_r1_x
-        )
-        tube_dalpha_G_m_xz = (
-        -tube_dalpha_G_m2_z*tube_end_p2_r3_y - tube_dalpha_G_m3_z*tube_end_p3_r1_x
-        )
-        tube_dalpha_G_m_yx = (
-        tube_dalpha_G_m2_x*tube_end_p2_r3_x - tube_dalpha_G_m1_x*tube_end_p1_r1_x
-        )
-        tube_dalpha_G_m_yy = (
-        tube_dalpha_G_m2_y*tube_end_p2_r3_x - tube_dalpha_G_m1_y*tube_end_p1_r1_x
-        )
-        tube_dalpha_G_m_yz = (
-        tube_dalpha_G_m2_z*tube_end_p2_r3_x - tube_dalpha_G_m1_z*tube_end_p1_r1_x
-        )
-        tube_dalpha_G_m_zx = (
-        tube_dalpha_G_m1_x*tube_end_p1_r3_y + tube_dalpha_G_m3_x*tube_end_p3_r3_x
-        )
-        tube_dalpha_G_m_zy = (
-        tube_dalpha_G_m1_y*tube_end_p1_r3_y + tube_dalpha_G_m3_y*tube_end_p3_r3_x
-        )
-        tube_dalpha_G_m_zz = (
-        tube_dalpha_G_m1_z*tube_end_p1_r3_y + tube_dalpha_G_m3_z*tube_end_p3_r3_x
-        )
-        # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        tube_d_G_m1_x = tube_h_3_z*tube_w_2_t_8 - tube_d_Gamma_1_t*tube_w_1_t_83
-        tube_d_G_m1_y = tube_d_Gamma_1_y*tube_w_1_t_83 + tube_d_N_2_zy*tube_w_2_t_8
-        tube_d_G_m1_z = tube_d_Gamma_1_z*tube_w_1_t_83 + tube_d_N_2_zz*tube_w_2_t_8
-        # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        tube_d_G_m2_x = -tube_d_Gamma_1_t*tube_w_1_t_84 - tube_h_3_z*tube_w_2_t_10
-        tube_d_G_m2_y = tube_d_Gamma_1_y*tube_w_1_t_84 - tube_d_N_2_zy*tube_w_2_t_10
-        tube_d_G_m2_z = tube_d_Gamma_1_z*tube_w_1_t_84 - tube_d_N_2_zz*tube_w_2_t_10
-        # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
-        tube_d_G_m3_x = tube_h_3_z*tube_w_2_t_12 - tube_d_Gamma_1_t*tube_w_1_t_85
-        tube_d_G_m3_y = tube_d_Gamma_1_y*tube_w_1_t_85 + tube_d_N_2_zy*tube_w_2_t_12
-        tube_d_G_m3_z = tube_d_Gamma_1_z*tube_w_1_t_85 + tube_d_N_2_zz*tube_w_2_t_12
-        # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_d_G_m_xx = -tube_d_G_m2_x*tube_end_p2_r3_y - tube_d_G_m3_x*tube_end_p3_r1_x
-        tube_d_G_m_xy = -tube_d_G_m2_y*tube_end_p2_r3_y - tube_d_G_m3_y*tube_end_p3_r1_x
-        tube_d_G_m_xz = -tube_d_G_m2_z*tube_end_p2_r3_y - tube_d_G_m3_z*tube_end_p3_r1_x
-        tube_d_G_m_yx = tube_d_G_m2_x*tube_end_p2_r3_x - tube_d_G_m1_x*tube_end_p1_r1_x
-        tube_d_G_m_yy = tube_d_G_m2_y*tube_end_p2_r3_x - tube_d_G_m1_y*tube_end_p1_r1_x
-        tube_d_G_m_yz = tube_d_G_m2_z*tube_end_p2_r3_x - tube_d_G_m1_z*tube_end_p1_r1_x
-        tube_d_G_m_zx = tube_d_G_m1_x*tube_end_p1_r3_y + tube_d_G_m3_x*tube_end_p3_r3_x
-        tube_d_G_m_zy = tube_d_G_m1_y*tube_end_p1_r3_y + tube_d_G_m3_y*tube_end_p3_r3_x
-        tube_d_G_m_zz = tube_d_G_m1_z*tube_end_p1_r3_y + tube_d_G_m3_z*tube_end_p3_r3_x
-        # (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
-        tube_dalpha_c_m_in_base_x = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_xx - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zx
-        )
-        tube_dalpha_c_m_in_base_y = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_xx - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zx
-        )
-        tube_dalpha_c_m_in_base_x_2 = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_xy - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zy
-        )
-        tube_dalpha_c_m_in_base_y_2 = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_xy - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zy
-        )
-        tube_dalpha_c_m_in_base_x_3 = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_xz - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zz
-        )
-        tube_dalpha_c_m_in_base_y_3 = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_xz - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zz
-        )
-        tube_dalpha_c_m_in_base_z = (
-        axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xx -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zx) +
-            axis_y_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xy -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zy) +
-            axis_z_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xz -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zz)
-        )
-        # (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
-        tube_d_c_m_in_base_x = (
-        -axis_x_tube_axes2_x*tube_d_G_m_xx - axis_y_tube_axes2_in_base_x*tube_d_G_m_yx -
-            axis_z_tube_axes2_in_base_x*tube_d_G_m_zx
-        )
-        tube_d_c_m_in_base_y = (
-        -axis_x_tube_axes2_y*tube_d_G_m_xx - axis_y_tube_axes2_in_base_y*tube_d_G_m_yx -
-            axis_z_tube_axes2_in_base_y*tube_d_G_m_zx
-        )
-        tube_d_c_m_in_base_z = (
-        -axis_x_tube_axes2_z*tube_d_G_m_xx - axis_y_tube_axes2_in_base_z*tube_d_G_m_yx -
-            axis_z_tube_axes2_in_base_z*tube_d_G_m_zx
-        )
-        tube_d_c_m_in_base_x_2 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_xy - axis_y_tube_axes2_in_base_x*tube_d_G_m_yy -
-            axis_z_tube_axes2_in_base_x*tube_d_G_m_zy
-        )
-        tube_d_c_m_in_base_y_2 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_xy - axis_y_tube_axes2_in_base_y*tube_d_G_m_yy -
-            axis_z_tube_axes2_in_base_y*tube_d_G_m_zy
-        )
-        tube_d_c_m_in_base_z_2 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_xy - axis_y_tube_axes2_in_base_z*tube_d_G_m_yy -
-            axis_z_tube_axes2_in_base_z*tube_d_G_m_zy
-        )
-        tube_d_c_m_in_base_x_3 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_xz - axis_y_tube_axes2_in_base_x*tube_d_G_m_yz -
-            axis_z_tube_axes2_in_base_x*tube_d_G_m_zz
-        )
-        tube_d_c_m_in_base_y_3 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_xz - axis_y_tube_axes2_in_base_y*tube_d_G_m_yz -
-            axis_z_tube_axes2_in_base_y*tube_d_G_m_zz
-        )
-        tube_d_c_m_in_base_z_3 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_xz - axis_y_tube_axes2_in_base_z*tube_d_G_m_yz -
-            axis_z_tube_axes2_in_base_z*tube_d_G_m_zz
-        )
-        tube_d_c_m_in_base_x_4 = (
-        axis_x_tube_axes2_x*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_x_3
-        )
-        tube_d_c_m_in_base_y_4 = (
-        axis_x_tube_axes2_y*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_x_3
-        )
-        tube_d_c_m_in_base_z_4 = (
-        axis_x_tube_axes2_z*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_x_3
-        )
-        tube_d_c_m_in_base_x_5 = (
-        axis_x_tube_axes2_x*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_y_3
-        )
-        # (M_aa) rotational block of M
-        tube_M_aa_t = (
-        tube_M_ta_t_7*tube_q_in_base_z + tube_d_c_m_in_base_y_4*tube_q_in_base_z -
-            axis_x_tube_axes2_x*tube_dalpha_c_m_in_base_x -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_2 -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_3 -
-            tube_M_ta_t_10*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_y
-        )
-        tube_M_aa_t_2 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_3 +
-            tube_M_ta_t_8*tube_q_in_base_z + tube_d_c_m_in_base_x_4*tube_q_in_base_z -
-            tube_M_ta_t_11*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_x
-        )
-        tube_M_aa_t_3 = (
-        tube_M_ta_t_12*tube_q_in_base_y + tube_M_ta_t_9*tube_q_in_base_z +
-            tube_d_c_m_in_base_x_4*tube_q_in_base_y -
-            axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_x -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_2 -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_3 -
-            tube_d_c_m_in_base_y_4*tube_q_in_base_x
-        )
-        tube_M_aa_t_4 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_3 +
-            tube_M_ta_t_11*tube_q_in_base_x + tube_d_c_m_in_base_x_5*tube_q_in_base_z -
-            tube_M_ta_t_5*tube_q_in_base_z -
-            tube_q_in_base_x*(axis_x_tube_axes2_z*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_y_3)
-        )
-        tube_M_aa_t_5 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_3 +
-            tube_M_ta_t_12*tube_q_in_base_x + tube_M_ta_t_6*tube_q_in_base_z +
-            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_y_3) -
-            tube_d_c_m_in_base_x_5*tube_q_in_base_y
-        )
-        tube_M_aa_t_6 = (
-        tube_M_ta_t_6*tube_q_in_base_y +
-            tube_q_in_base_y*(axis_x_tube_axes2_x*tube_d_c_m_in_base_z +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_z_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_z_3) - tube_dalpha_c_m_in_base_z -
-            tube_M_ta_t_9*tube_q_in_base_x -
-            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_z_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_z_3)
-        )
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
-        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
-        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
+        tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z + tube_m3_w_2*tube_n_m3_in_axes2_z
         # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_tip_x = (
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
         axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        tube_omega_tip_y = (
-        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
-            axis_y_tube_axes2_in_base_z*omega_z
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_omega_tip_z = (
-        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
-            axis_z_tube_axes2_in_base_z*omega_z
-        )
-        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
         # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_tip_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_S_dot_tip_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_1) rate of joint 1
+        tube_qd_1_t = 1.35*tube_eta_1
+        tube_qd_1_t_2 = 1.35*tube_eta_2
+        tube_qd_1_t_3 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m2_w_1_t*tube_qd_1_t_2 + tube_m3_w_1_t*tube_qd_1_t_3)
         )
-        tube_S_dot_tip_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67)
         )
-        # (tube-qd_3) rate of joint 3
-        tube_qd_3_t = 1.35*tube_eta_1
-        tube_qd_3_t_2 = 1.35*tube_eta_2
-        tube_qd_3_t_3 = 1.35*tube_eta_3
-        tube_qd_3_t_4 = (
-        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
-            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
-        tube_qd_3_t_5 = (
-        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
-            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
-            - tube_qd_3_t_4*tube_w_1_t_69)
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
+            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
         )
-        tube_qd_3_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
-            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
-            + tube_qd_3_t_5*tube_w_1_t_53)
-        )
-        tube_qd_3_t_7 = (
-        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
-            tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
-        )
-        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
-        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
-        # (tube-u_1) centripetal acceleration of the connection point
-        tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
-        tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
-        tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
-        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
-        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
-        tube_W_2_t = tube_omega_1_t*tube_omega_1_t
-        tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2
-        tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8
-        tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2
+        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
+        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        # (tube-u_1) centripetal acceleration of the connection point
+        tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
+        tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
+        tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_root_2*tube_zeta_2_y
-        tube_bias_t_2 = tube_W_2_xy*tube_root_2
-        tube_bias_t_3 = 2.0*tube_S_dot_tip_x
-        tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8
-        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2
-        tube_bias_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_z = 2.0*tube_bias_t + tube_bias_t_5
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2
+        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
+        tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_in_axes2_z = 2.0*tube_bias_t + tube_bias_t_5
         # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        tube_rel_o_y = (
-        axis_y_tube_axes2_in_base_x*tube_u_1_x + axis_y_tube_axes2_in_base_y*tube_u_1_y +
-            axis_y_tube_axes2_in_base_z*tube_u_1_z - tube_bias_y
+        tube_rel_o_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
+            axis_y_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_y
         )
-        tube_rel_o_z = (
-        axis_z_tube_axes2_in_base_x*tube_u_1_x + axis_z_tube_axes2_in_base_y*tube_u_1_y +
-            axis_z_tube_axes2_in_base_z*tube_u_1_z - tube_bias_z
+        tube_rel_o_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_u_1_x + axis_z_tube_axes2_y*tube_u_1_y +
+            axis_z_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_nd_m1_y = (
-        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
-            tube_end_p1_r3_y*tube_omega_tip_x
+        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_nd_m1_in_axes2_y = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_nd_m1_z = (
-        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
-            tube_end_p1_r3_x*tube_qd_3_t_8
+        tube_nd_m1_in_axes2_z = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
-        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
-        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_nd_m2_x = (
-        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
-            tube_end_p2_r3_x*tube_omega_tip_z
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_nd_m2_in_axes2_x = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
-        tube_nd_m2_y = (
-        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_z
+        tube_nd_m2_in_axes2_y = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
-        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t = (
+        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        )
         tube_nu_2_t_2 = (
-        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
-            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
         tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
-        tube_nd_m3_x = (
-        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
-            tube_end_p3_r3_y*tube_omega_tip_x
+        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_nd_m3_in_axes2_x = (
+        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_nd_m3_z = (
-        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
-            tube_end_p3_r3_y*tube_omega_tip_z
+        tube_nd_m3_in_axes2_z = (
+        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
-            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
         )
-        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
-        # (tube-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        tube_qdd_3_o_t = 1.35*tube_nu_1
-        tube_qdd_3_o_t_2 = 1.35*tube_nu_2
-        tube_qdd_3_o_t_3 = 1.35*tube_nu_3
-        tube_qdd_3_o_t_4 = (
-        inv_tube_w_1_t_157*(tube_qdd_3_o_t*tube_w_1_t_78 + tube_qdd_3_o_t_2*tube_w_1_t_79 +
-            tube_qdd_3_o_t_3*tube_w_1_t_80 + tube_rel_o_y*tube_w_1_t_76 +
-            tube_rel_o_z*tube_w_1_t_77)
+        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        # (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        tube_qdd_1_o_t = 1.35*tube_nu_1
+        tube_qdd_1_o_t_2 = 1.35*tube_nu_2
+        tube_qdd_1_o_t_3 = 1.35*tube_nu_3
+        tube_qdd_1_o = (
+        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t + tube_m2_w_1_t*tube_qdd_1_o_t_2 +
+            tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_y*tube_w_1_t_76 +
+            tube_rel_o_in_axes2_z*tube_w_1_t_77)
         )
-        tube_qdd_3_o_t_5 = (
-        inv_tube_w_1_t_129*(tube_qdd_3_o_t*tube_w_1_t_66 + tube_qdd_3_o_t_3*tube_w_1_t_68 +
-            tube_rel_o_y*tube_w_1_t_64 + tube_rel_o_z*tube_w_1_t_65 -
-            tube_qdd_3_o_t_2*tube_w_1_t_67 - tube_qdd_3_o_t_4*tube_w_1_t_69)
+        # (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        tube_qdd_2_o_t = (
+        inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_3*tube_w_1_t_68 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_64 + tube_rel_o_in_axes2_z*tube_w_1_t_65 -
+            tube_qdd_1_o*tube_w_1_t_69 - tube_qdd_1_o_t_2*tube_w_1_t_67)
         )
-        tube_qdd_3_o_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_o_z + tube_qdd_3_o_t*tube_w_1_t_51 +
-            tube_qdd_3_o_t_3*tube_w_1_t_52 + tube_qdd_3_o_t_4*tube_w_1_t_58 +
-            tube_qdd_3_o_t_5*tube_w_1_t_53 + tube_rel_o_y*tube_w_1_t_50)
+        tube_qdd_2_o_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o*tube_w_1_t_58 +
+            tube_qdd_1_o_t*tube_w_1_t_51 + tube_qdd_1_o_t_3*tube_w_1_t_52 +
+            tube_qdd_2_o_t*tube_w_1_t_53 + tube_rel_o_in_axes2_y*tube_w_1_t_50)
         )
-        tube_qdd_3_o_t_7 = (
-        tube_qdd_3_o_t*tube_w_1_t_15 + tube_qdd_3_o_t_3*tube_w_1_t_16 +
-            tube_qdd_3_o_t_6*tube_w_1_t_21 + tube_rel_o_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_3_o_t*tube_w_1_t_35 +
-            tube_qdd_3_o_t_3*tube_w_1_t_36 + tube_qdd_3_o_t_4*tube_w_1_t_45 +
-            tube_qdd_3_o_t_5*tube_w_1_t_41 + tube_rel_o_y*tube_w_1_t_34 -
-            tube_qdd_3_o_t_6*tube_w_1_t_37) - tube_qdd_3_o_t_4*tube_w_1_t_29 -
-            tube_qdd_3_o_t_5*tube_w_1_t_25
+        tube_qdd_2_o_t_3 = (
+        tube_qdd_1_o_t*tube_w_1_t_15 + tube_qdd_1_o_t_3*tube_w_1_t_16 +
+            tube_qdd_2_o_t_2*tube_w_1_t_21 + tube_rel_o_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1_o*tube_w_1_t_45 +
+            tube_qdd_1_o_t*tube_w_1_t_35 + tube_qdd_1_o_t_3*tube_w_1_t_36 +
+            tube_qdd_2_o_t*tube_w_1_t_41 + tube_rel_o_in_axes2_y*tube_w_1_t_34 -
+            tube_qdd_2_o_t_2*tube_w_1_t_37) - tube_qdd_1_o*tube_w_1_t_29 -
+            tube_qdd_2_o_t*tube_w_1_t_25
         )
-        tube_qdd_3_o_t_8 = inv_tube_w_1_t_16*tube_qdd_3_o_t_7
+        tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3
+        # (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        tube_dalpha_alpha_1_t = -tube_c_2*tube_o_1_in_axes2_x
+        tube_dalpha_alpha_1_in_axes2_xy = tube_o_1_in_axes2_y*tube_s_2
+        tube_dalpha_alpha_1_t_2 = -tube_c_2*tube_o_1_in_axes2_y
+        tube_dalpha_alpha_1_in_axes2_xx = tube_o_1_in_axes2_x*tube_s_2
+        tube_dalpha_alpha_1_in_axes2_xz = tube_o_1_in_axes2_z*tube_s_2
+        tube_dalpha_alpha_1_t_3 = -tube_c_2*tube_o_1_in_axes2_z
+        # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        tube_d_alpha_1_in_axes2_xy = tube_s_2*tube_w_1_in_axes2_y
+        tube_d_alpha_1_in_axes2_xz = tube_s_2*tube_w_1_in_axes2_z
+        tube_d_alpha_1_t = -tube_c_2*tube_w_1_in_axes2_z
         # (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        tube_alpha_1_o_t = tube_qdd_3_o_t_4*tube_s_2
-        tube_alpha_1_o_t_2 = tube_c_2*tube_qdd_3_o_t_4
+        tube_alpha_1_o_in_axes2_x = tube_qdd_1_o*tube_s_2
+        tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o
         # (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        tube_alpha_2_o_x = tube_alpha_1_o_t - tube_zeta_2_x
-        tube_alpha_2_o_y = -tube_alpha_1_o_t_2 - tube_zeta_2_y
+        tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x
+        tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz
         # (tube-B_2_o) remainder of the acceleration tensor of link 2
-        tube_B_2_o_xy = -tube_W_2_xy - tube_qdd_3_o_t_8
-        tube_B_2_o_yx = tube_qdd_3_o_t_8 - tube_W_2_xy
-        tube_B_2_o_zx = tube_zeta_2_y - tube_alpha_2_o_y
-        tube_B_2_o_zy = tube_alpha_2_o_x - tube_zeta_2_x
+        tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o
+        tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o
+        tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
+        tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
+        # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_root_2
+        tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_root_2
+        tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_root_2
+        tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_root_2
+        tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_root_2
+        tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_root_2
+        # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_d_acc_3_in_axes2_yy = tube_root_2*tube_w_2_in_axes2_y
+        tube_d_acc_3_in_axes2_yz = tube_root_2*tube_w_2_in_axes2_z
+        tube_d_acc_3_in_axes2_zy = tube_root_2*tube_w_1_t_78
+        tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_root_2
         # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x
-        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
-        tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y
-        tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2
-        tube_acc_3_o_x = (
+        tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_acc_3_o_t = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_s_2
+        tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_o_t*tube_s_2
+        tube_acc_3_o_in_axes2_x = (
         axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
-            axis_x_tube_axes2_z*tube_u_1_z - tube_g_r3_x
+            axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x
         )
-        tube_acc_3_o_y = (
-        tube_bias_t_4 + tube_qdd_3_o_t_8*tube_root_2 - tube_bias_t_2 - tube_g_r3_y
+        tube_acc_3_o_in_axes2_y = (
+        tube_bias_t_4 + tube_qdd_2_o*tube_root_2 - tube_bias_t_2 - tube_g_in_axes2_y
         )
-        tube_acc_3_o_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x - tube_alpha_2_o_y*tube_root_2
+        tube_acc_3_o_in_axes2_z = (
+        tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_root_2
+        )
         # (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
-        tube_f_3_o_x = (
-        tube_acc_3_o_x*tube_link3_mass - tube_B_2_o_xy*tube_h_3_z - tube_alpha_1_o_t_2*tube_h_3_y
-            - tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3)
+        tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
+        tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_f_3_o_t_3 = tube_qd_2*tube_qd_2
+        tube_f_3_o_in_axes2_x = (
+        tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y +
+            tube_h_3_in_spec2_x*(-tube_f_3_o_t_2 - tube_f_3_o_t_3) -
+            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
         )
-        tube_f_3_o_y = (
-        tube_B_2_o_yx*tube_h_3_x + tube_acc_3_o_y*tube_link3_mass + tube_h_3_z*(tube_W_2_t +
-            tube_W_2_t_3) - tube_alpha_1_o_t*tube_h_3_y
+        tube_f_3_o_in_axes2_y = (
+        tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_y*tube_link3_mass +
+            tube_h_3_in_spec2_z*(tube_f_3_o_t + tube_f_3_o_t_3) -
+            tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y
         )
-        tube_f_3_o_z = (
-        tube_B_2_o_zx*tube_h_3_x + tube_acc_3_o_z*tube_link3_mass - tube_B_2_o_zy*tube_h_3_z -
-            tube_h_3_y*(tube_W_2_t + tube_W_2_t_2)
+        tube_f_3_o_in_axes2_z = (
+        tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_z*tube_link3_mass -
+            tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_o_t +
+            tube_f_3_o_t_2)
         )
         # (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        tube_mu_2_o_x = (
-        tube_B_2_o_yx*tube_J_group_2_xz + tube_B_2_o_zy*tube_Sigma_2_yy +
-            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_o_t +
-            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_o_zx*tube_J_group_2_xy -
-            tube_acc_3_o_y*tube_h_3_y - tube_acc_3_o_z*tube_h_3_z
+        tube_mu_2_o_in_axes2_x = (
+        tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
+            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z
         )
-        tube_mu_2_o_y = (
-        tube_B_2_o_zy*tube_J_group_2_xy + tube_acc_3_o_x*tube_h_3_y + tube_g_r1_x*tube_h_2_x -
-            tube_B_2_o_xy*tube_J_group_2_yz - tube_B_2_o_zx*tube_Sigma_2_xx -
-            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_o_t_2 -
-            tube_acc_3_o_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y
+        tube_mu_2_o_in_axes2_y = (
+        tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
+            tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - tube_g_in_axes2_x*tube_h_2_in_spec2_y
         )
-        tube_mu_2_o_z = (
-        tube_B_2_o_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t - tube_W_2_t_2) +
-            tube_J_group_2_xz*tube_alpha_1_o_t + tube_acc_3_o_x*tube_h_3_z +
-            tube_acc_3_o_y*tube_h_3_x - tube_B_2_o_xy*tube_Sigma_2_yy -
-            tube_J_group_2_yz*tube_alpha_1_o_t_2 - tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x
+        tube_mu_2_o_in_axes2_z = (
+        tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx + tube_J_group_2_in_axes2_xy*(tube_f_3_o_t
+            - tube_f_3_o_t_2) + tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
+            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
+        )
+        # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_dalpha_N_2_in_axes2_zx = (
+        tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
+            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
+            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t
+        )
+        tube_dalpha_N_2_in_axes2_zy = (
+        tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
+            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
+            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2
+        )
+        tube_dalpha_N_2_in_axes2_zz = (
+        tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
+            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
+            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3
+        )
+        # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_d_N_2_in_axes2_zy = (
+        tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
+            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y -
+            tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_w_1_t_78
+        )
+        tube_d_N_2_in_axes2_zz = (
+        tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
+            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
+            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t
         )
         # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_o_y = tube_mu_2_o_y - tube_f_3_o_z*tube_root_2
-        tube_N_2_o_z = tube_mu_2_o_z + tube_f_3_o_y*tube_root_2
+        tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_root_2
+        tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_root_2
+        # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        tube_dalpha_Gamma_1_t = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
+            tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z))
+        )
+        tube_dalpha_Gamma_1_in_axes2_x = (
+        tube_dalpha_Gamma_1_t +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
+            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z)
+        )
+        tube_dalpha_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z))
+        )
+        tube_dalpha_Gamma_1_in_axes2_y = (
+        tube_dalpha_Gamma_1_t_2 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
+            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z)
+        )
+        tube_dalpha_Gamma_1_t_3 = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
+        )
+        tube_dalpha_Gamma_1_in_axes2_z = (
+        tube_dalpha_Gamma_1_t_3 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
+            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
+        )
+        # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        tube_d_Gamma_1_in_axes2_x = tube_c_2*tube_h_3_in_spec2_y
+        tube_d_Gamma_1_t = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
+            tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z))
+        )
+        tube_d_Gamma_1_in_axes2_y = (
+        tube_d_Gamma_1_t + tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
+            tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
+            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z)
+        )
+        tube_d_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
+            tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_d_alpha_1_t*tube_h_3_in_spec2_x -
+            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
+        )
+        tube_d_Gamma_1_in_axes2_z = (
+        tube_d_Gamma_1_t_2 + tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
+            tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
+            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
+        )
+        # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_in_axes2_yx = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y +
+            tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y
+        )
+        tube_dalpha_G_in_axes2_yy = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
+            tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y
+        )
+        tube_dalpha_G_in_axes2_yz = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
+            tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y
+        )
+        tube_dalpha_G_in_axes2_zx = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z +
+            tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z
+        )
+        tube_dalpha_G_in_axes2_zy = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z +
+            tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z
+        )
+        tube_dalpha_G_in_axes2_zz = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
+            tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z
+        )
+        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_d_G_in_axes2_yz = (
+        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y
+        )
         # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_G_o_t = inv_tube_w_1_t_16*tube_N_2_o_z
-        tube_G_o_t_2 = inv_tube_w_1_t_57*tube_G_o_t*tube_w_1_t_17
-        tube_G_o_t_3 = inv_tube_w_1_t_95*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
+        tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
+        tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
+        tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
         tube_G_o_t_4 = (
-        inv_tube_w_1_t_129*(tube_G_o_t_2*tube_w_1_t_41 + tube_G_o_t_3*tube_w_1_t_53 -
+        inv_tube_w_1_t_63*(tube_G_o_t_2*tube_w_1_t_41 + tube_G_o_t_3*tube_w_1_t_53 -
             tube_G_o_t*tube_w_1_t_25)
         )
         tube_G_o_t_5 = (
-        inv_tube_w_1_t_157*(tube_G_o_t_2*tube_w_1_t_45 + tube_G_o_t_3*tube_w_1_t_58 +
-            tube_mu_2_o_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 - tube_G_o_t_4*tube_w_1_t_69 -
-            tube_N_2_o_y*tube_c_2)
+        inv_tube_w_1_t_75*(tube_G_o_t_2*tube_w_1_t_45 + tube_G_o_t_3*tube_w_1_t_58 +
+            tube_N_2_o_in_axes2_y*tube_c_2 + tube_mu_2_o_in_axes2_x*tube_s_2 -
+            tube_G_o_t*tube_w_1_t_29 - tube_G_o_t_4*tube_w_1_t_69)
         )
-        tube_G_o_t_6 = (
+        tube_G_o_in_axes2_y = (
         tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
             tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_w_1_t_76
         )
-        tube_G_o_t_7 = (
-        inv_tube_w_1_t_95*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77
+        tube_G_o_in_axes2_z = (
+        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77
         )
-        tube_G_o_t_8 = (
+        # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m1_in_axes2_x = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2
+        )
+        tube_dalpha_G_m1_in_axes2_y = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2
+        )
+        tube_dalpha_G_m1_in_axes2_z = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2
+        )
+        # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m1_in_axes2_x = (
+        tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_h_3_in_spec2_z*tube_m1_w_2
+        )
+        tube_d_G_m1_in_axes2_y = (
+        tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 + tube_d_N_2_in_axes2_zy*tube_m1_w_2
+        )
+        tube_d_G_m1_in_axes2_z = (
+        tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_d_N_2_in_axes2_zz*tube_m1_w_2
+        )
+        # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
-            tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_w_1_t_78
+            tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_m1_w_1_t
         )
-        tube_G_o_t_9 = 1.35*tube_G_o_t_8
-        tube_G_o_t_10 = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_w_1_t_79
-        tube_G_o_t_11 = 1.35*tube_G_o_t_10
-        tube_G_o_t_12 = (
+        tube_G_m1_o = 1.35*tube_G_m1_o_t
+        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m2_in_axes2_x = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2
+        )
+        tube_dalpha_G_m2_in_axes2_y = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2
+        )
+        tube_dalpha_G_m2_in_axes2_z = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2
+        )
+        # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m2_in_axes2_x = (
+        tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_h_3_in_spec2_z*tube_m2_w_2
+        )
+        tube_d_G_m2_in_axes2_y = (
+        tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 + tube_d_N_2_in_axes2_zy*tube_m2_w_2
+        )
+        tube_d_G_m2_in_axes2_z = (
+        tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_d_N_2_in_axes2_zz*tube_m2_w_2
+        )
+        # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_m2_w_1_t
+        tube_G_m2_o = -1.35*tube_G_m2_o_t
+        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m3_in_axes2_x = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2
+        )
+        tube_dalpha_G_m3_in_axes2_y = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2
+        )
+        tube_dalpha_G_m3_in_axes2_z = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2
+        )
+        # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m3_in_axes2_x = (
+        tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_h_3_in_spec2_z*tube_m3_w_2
+        )
+        tube_d_G_m3_in_axes2_y = (
+        tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_d_N_2_in_axes2_zy*tube_m3_w_2
+        )
+        tube_d_G_m3_in_axes2_z = (
+        tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_d_N_2_in_axes2_zz*tube_m3_w_2
+        )
+        # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
-            tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_w_1_t_80
+            tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_m3_w_1_t
         )
-        tube_G_o_t_13 = 1.35*tube_G_o_t_12
-        # (tube-U) velocity and gravity terms of the leg force
-        tube_U_in_base_x = (
-        axis_x_tube_axes2_x*tube_f_3_o_x + axis_y_tube_axes2_in_base_x*tube_G_o_t_6 +
-            axis_z_tube_axes2_in_base_x*tube_G_o_t_7
+        tube_G_m3_o = 1.35*tube_G_m3_o_t
+        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m_in_axes2_xx = (
+        -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
         )
-        tube_U_in_base_y = (
-        axis_x_tube_axes2_y*tube_f_3_o_x + axis_y_tube_axes2_in_base_y*tube_G_o_t_6 +
-            axis_z_tube_axes2_in_base_y*tube_G_o_t_7
+        tube_dalpha_G_m_in_axes2_xy = (
+        -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_y*tube_end_p3_in_axes2_z
         )
-        tube_U_in_base_z = (
-        axis_x_tube_axes2_z*tube_f_3_o_x + axis_y_tube_axes2_in_base_z*tube_G_o_t_6 +
-            axis_z_tube_axes2_in_base_z*tube_G_o_t_7
+        tube_dalpha_G_m_in_axes2_xz = (
+        -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_z*tube_end_p3_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_yx = (
+        tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_x*tube_end_p1_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_yy = (
+        tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_y*tube_end_p1_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_yz = (
+        tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_z*tube_end_p1_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_zx = (
+        tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_zy = (
+        tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_y*tube_n_m3_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_zz = (
+        tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
+        )
+        # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_d_G_m_in_axes2_xx = (
+        -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_xy = (
+        -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_y*tube_end_p3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_xz = (
+        -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_z*tube_end_p3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_yx = (
+        tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_x*tube_end_p1_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_yy = (
+        tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_y*tube_end_p1_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_yz = (
+        tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_z*tube_end_p1_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_zx = (
+        tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_zy = (
+        tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_zz = (
+        tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
         )
         # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_G_m_o_x = tube_G_o_t_11*tube_end_p2_r3_y - tube_G_o_t_13*tube_end_p3_r1_x
-        tube_G_m_o_y = -tube_G_o_t_11*tube_end_p2_r3_x - tube_G_o_t_9*tube_end_p1_r1_x
-        tube_G_m_o_z = tube_G_o_t_13*tube_end_p3_r3_x + tube_G_o_t_9*tube_end_p1_r3_y
+        tube_G_m_o_in_axes2_x = (
+        -tube_G_m2_o*tube_end_p2_in_axes2_y - tube_G_m3_o*tube_end_p3_in_axes2_z
+        )
+        tube_G_m_o_in_axes2_y = (
+        tube_G_m2_o*tube_n_m2_in_axes2_y - tube_G_m1_o*tube_end_p1_in_axes2_z
+        )
+        tube_G_m_o_in_axes2_z = (
+        tube_G_m1_o*tube_n_m1_in_axes2_z + tube_G_m3_o*tube_n_m3_in_axes2_z
+        )
+        # (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        tube_dalpha_c_in_axes2_xx = (
+        tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_x
+        )
+        tube_dalpha_c_in_axes2_xy = (
+        tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_y
+        )
+        tube_dalpha_c_in_axes2_xz = (
+        tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_z
+        )
+        # (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        tube_d_c_in_axes2_xy = (
+        tube_h_3_in_spec2_y*tube_w_1_t_78 - tube_h_3_in_spec2_z*tube_w_2_in_axes2_y
+        )
+        tube_d_c_in_axes2_xz = (
+        tube_d_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_w_2_in_axes2_z
+        )
+        # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
+        tube_Q_t = (
+        tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y
+            - tube_link3_mass
+        )
+        tube_Q_t_2 = 0.5*tube_Q_t
+        tube_Q_t_3 = (
+        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z
+            - tube_link3_mass
+        )
+        tube_Q_t_4 = 0.5*tube_Q_t_3
+        tube_Q_t_5 = (
+        axis_y_tube_axes2_x*tube_Q_t_2 + axis_z_tube_axes2_x*tube_d_G_in_axes2_yz -
+            axis_x_tube_axes2_x*tube_d_c_in_axes2_xy
+        )
+        tube_Q_t_6 = (
+        axis_y_tube_axes2_y*tube_Q_t_2 + axis_z_tube_axes2_y*tube_d_G_in_axes2_yz -
+            axis_x_tube_axes2_y*tube_d_c_in_axes2_xy
+        )
+        tube_Q_t_7 = (
+        axis_y_tube_axes2_z*tube_Q_t_2 + axis_z_tube_axes2_z*tube_d_G_in_axes2_yz -
+            axis_x_tube_axes2_z*tube_d_c_in_axes2_xy
+        )
+        tube_Q_t_8 = axis_z_tube_axes2_x*tube_Q_t_4 - axis_x_tube_axes2_x*tube_d_c_in_axes2_xz
+        tube_Q_t_9 = axis_z_tube_axes2_y*tube_Q_t_4 - axis_x_tube_axes2_y*tube_d_c_in_axes2_xz
+        tube_Q_t_10 = axis_z_tube_axes2_z*tube_Q_t_4 - axis_x_tube_axes2_z*tube_d_c_in_axes2_xz
+        tube_Q_t_11 = axis_y_tube_axes2_x*tube_Q_t_5 + axis_z_tube_axes2_x*tube_Q_t_8
+        tube_Q_xx = 2.0*tube_Q_t_11 + tube_link3_mass
+        tube_Q_xy = (
+        axis_y_tube_axes2_x*tube_Q_t_6 + axis_y_tube_axes2_y*tube_Q_t_5 +
+            axis_z_tube_axes2_x*tube_Q_t_9 + axis_z_tube_axes2_y*tube_Q_t_8
+        )
+        tube_Q_xz = (
+        axis_y_tube_axes2_x*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_5 +
+            axis_z_tube_axes2_x*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_8
+        )
+        tube_Q_t_12 = axis_y_tube_axes2_y*tube_Q_t_6 + axis_z_tube_axes2_y*tube_Q_t_9
+        tube_Q_yy = 2.0*tube_Q_t_12 + tube_link3_mass
+        tube_Q_yz = (
+        axis_y_tube_axes2_y*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_6 +
+            axis_z_tube_axes2_y*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_9
+        )
+        tube_Q_t_13 = axis_y_tube_axes2_z*tube_Q_t_7 + axis_z_tube_axes2_z*tube_Q_t_10
+        tube_Q_zz = 2.0*tube_Q_t_13 + tube_link3_mass
+        # (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
+        tube_dalpha_c_m_zz = (
+        axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
+            axis_y_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
+            axis_z_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz)
+        )
+        # (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
+        tube_d_c_m_t = (
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx
+        )
+        tube_d_c_m_t_2 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx
+        )
+        tube_d_c_m_t_3 = (
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy
+        )
+        tube_d_c_m_t_4 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy
+        )
+        tube_d_c_m_t_5 = (
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz
+        )
+        tube_d_c_m_t_6 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz
+        )
+        tube_d_c_m_xx = (
+        axis_x_tube_axes2_x*tube_d_c_m_t + axis_y_tube_axes2_x*tube_d_c_m_t_3 +
+            axis_z_tube_axes2_x*tube_d_c_m_t_5
+        )
+        tube_d_c_m_xy = (
+        axis_x_tube_axes2_y*tube_d_c_m_t + axis_y_tube_axes2_y*tube_d_c_m_t_3 +
+            axis_z_tube_axes2_y*tube_d_c_m_t_5
+        )
+        tube_d_c_m_xz = (
+        axis_x_tube_axes2_z*tube_d_c_m_t + axis_y_tube_axes2_z*tube_d_c_m_t_3 +
+            axis_z_tube_axes2_z*tube_d_c_m_t_5
+        )
+        tube_d_c_m_yx = (
+        axis_x_tube_axes2_x*tube_d_c_m_t_2 + axis_y_tube_axes2_x*tube_d_c_m_t_4 +
+            axis_z_tube_axes2_x*tube_d_c_m_t_6
+        )
+        # (tube-U) velocity and gravity terms of the leg force
+        tube_U_x = (
+        axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_x*tube_G_o_in_axes2_y +
+            axis_z_tube_axes2_x*tube_G_o_in_axes2_z
+        )
+        tube_U_y = (
+        axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_y*tube_G_o_in_axes2_y +
+            axis_z_tube_axes2_y*tube_G_o_in_axes2_z
+        )
+        tube_U_z = (
+        axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_z*tube_G_o_in_axes2_y +
+            axis_z_tube_axes2_z*tube_G_o_in_axes2_z
+        )
+        # (M_ta) coupling block of M
+        tube_M_ta_t = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx
+        )
+        tube_M_ta_t_2 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx
+        )
+        tube_M_ta_t_3 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx
+        )
+        tube_M_ta_t_4 = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy
+        )
+        tube_M_ta_t_5 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy
+        )
+        tube_M_ta_t_6 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy
+        )
+        tube_M_ta_t_7 = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz
+        )
+        tube_M_ta_t_8 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz
+        )
+        tube_M_ta_t_9 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
+            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz
+        )
+        tube_M_ta_t_10 = tube_Q_xy*tube_q_z
+        tube_M_ta_t_11 = tube_Q_xz*tube_q_y
+        tube_M_ta_t_12 = tube_Q_yz*tube_q_x
+        tube_M_ta_t_13 = (
+        tube_M_ta_t_11 - tube_M_ta_t_10 - axis_x_tube_axes2_x*tube_M_ta_t -
+            axis_y_tube_axes2_x*tube_M_ta_t_4 - axis_z_tube_axes2_x*tube_M_ta_t_7
+        )
+        tube_M_ta_t_14 = (
+        tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t - axis_y_tube_axes2_y*tube_M_ta_t_4 -
+            axis_z_tube_axes2_y*tube_M_ta_t_7 - tube_Q_xz*tube_q_x
+        )
+        tube_M_ta_t_15 = (
+        tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t - axis_y_tube_axes2_z*tube_M_ta_t_4 -
+            axis_z_tube_axes2_z*tube_M_ta_t_7 - tube_Q_xx*tube_q_y
+        )
+        tube_M_ta_t_16 = (
+        tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 - axis_y_tube_axes2_x*tube_M_ta_t_5
+            - axis_z_tube_axes2_x*tube_M_ta_t_8 - tube_Q_yy*tube_q_z
+        )
+        tube_M_ta_t_17 = (
+        tube_M_ta_t_10 - tube_M_ta_t_12 - axis_x_tube_axes2_y*tube_M_ta_t_2 -
+            axis_y_tube_axes2_y*tube_M_ta_t_5 - axis_z_tube_axes2_y*tube_M_ta_t_8
+        )
+        tube_M_ta_t_18 = (
+        tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 - axis_y_tube_axes2_z*tube_M_ta_t_5
+            - axis_z_tube_axes2_z*tube_M_ta_t_8 - tube_Q_xy*tube_q_y
+        )
+        tube_M_ta_t_19 = (
+        tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 - axis_y_tube_axes2_x*tube_M_ta_t_6
+            - axis_z_tube_axes2_x*tube_M_ta_t_9 - tube_Q_yz*tube_q_z
+        )
+        tube_M_ta_t_20 = (
+        tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 - axis_y_tube_axes2_y*tube_M_ta_t_6
+            - axis_z_tube_axes2_y*tube_M_ta_t_9 - tube_Q_zz*tube_q_x
+        )
+        tube_M_ta_t_21 = (
+        tube_M_ta_t_12 - tube_M_ta_t_11 - axis_x_tube_axes2_z*tube_M_ta_t_3 -
+            axis_y_tube_axes2_z*tube_M_ta_t_6 - axis_z_tube_axes2_z*tube_M_ta_t_9
+        )
+        # (M_aa) rotational block of M
+        tube_M_aa_t = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx
+        )
+        tube_M_aa_t_2 = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx
+        )
+        tube_M_aa_t_3 = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy
+        )
+        tube_M_aa_t_4 = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy
+        )
+        tube_M_aa_t_5 = (
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz
+        )
+        tube_M_aa_t_6 = (
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
+            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
+            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz
+        )
+        tube_M_aa_t_7 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx
+        )
+        tube_M_aa_t_8 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy
+        )
+        tube_M_aa_t_9 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz - axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
+            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz
+        )
+        tube_M_aa_t_10 = (
+        tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
+            axis_y_tube_axes2_x*tube_M_aa_t_3 - axis_z_tube_axes2_x*tube_M_aa_t_5 -
+            tube_M_ta_t_16*tube_q_z - tube_d_c_m_xz*tube_q_y
+        )
+        tube_M_aa_t_11 = (
+        tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
+            axis_y_tube_axes2_y*tube_M_aa_t_3 - axis_z_tube_axes2_y*tube_M_aa_t_5 -
+            tube_M_ta_t_17*tube_q_z - tube_d_c_m_xx*tube_q_z
+        )
+        tube_M_aa_t_12 = (
+        tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
+            axis_y_tube_axes2_z*tube_M_aa_t_3 - axis_z_tube_axes2_z*tube_M_aa_t_5 -
+            tube_M_ta_t_18*tube_q_z - tube_d_c_m_xy*tube_q_x
+        )
+        tube_M_aa_t_13 = (
+        tube_M_ta_t_14*tube_q_z + tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 +
+            axis_y_tube_axes2_z*tube_d_c_m_t_4 + axis_z_tube_axes2_z*tube_d_c_m_t_6) -
+            axis_x_tube_axes2_y*tube_M_aa_t_2 - axis_y_tube_axes2_y*tube_M_aa_t_4 -
+            axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_20*tube_q_x - tube_d_c_m_yx*tube_q_z
+        )
+        tube_M_aa_t_14 = (
+        tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
+            axis_y_tube_axes2_z*tube_M_aa_t_4 - axis_z_tube_axes2_z*tube_M_aa_t_6 -
+            tube_M_ta_t_21*tube_q_x - tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 +
+            axis_y_tube_axes2_y*tube_d_c_m_t_4 + axis_z_tube_axes2_y*tube_d_c_m_t_6)
+        )
+        tube_M_aa_t_15 = (
+        tube_M_ta_t_18*tube_q_x + tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 +
+            axis_y_tube_axes2_x*tube_M_aa_t_8 + axis_z_tube_axes2_x*tube_M_aa_t_9) -
+            tube_dalpha_c_m_zz - tube_M_ta_t_15*tube_q_y -
+            tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + axis_y_tube_axes2_y*tube_M_aa_t_8 +
+            axis_z_tube_axes2_y*tube_M_aa_t_9)
+        )
         # (Z_a) rotational part of Z
         tube_Z_a_t = (
-        axis_x_tube_axes2_x*tube_G_m_o_x + axis_y_tube_axes2_in_base_x*tube_G_m_o_y +
-            axis_z_tube_axes2_in_base_x*tube_G_m_o_z + tube_U_in_base_z*tube_q_in_base_y -
-            tube_U_in_base_y*tube_q_in_base_z
+        axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x + axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
+            axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*tube_q_y - tube_U_y*tube_q_z
         )
         tube_Z_a_t_2 = (
-        axis_x_tube_axes2_y*tube_G_m_o_x + axis_y_tube_axes2_in_base_y*tube_G_m_o_y +
-            axis_z_tube_axes2_in_base_y*tube_G_m_o_z + tube_U_in_base_x*tube_q_in_base_z -
-            tube_U_in_base_z*tube_q_in_base_x
+        axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x + axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
+            axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*tube_q_z - tube_U_z*tube_q_x
         )
         tube_Z_a_t_3 = (
-        axis_x_tube_axes2_z*tube_G_m_o_x + axis_y_tube_axes2_in_base_z*tube_G_m_o_y +
-            axis_z_tube_axes2_in_base_z*tube_G_m_o_z + tube_U_in_base_y*tube_q_in_base_x -
-            tube_U_in_base_x*tube_q_in_base_y
+        axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x + axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
+            axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*tube_q_x - tube_U_x*tube_q_y
         )
-        # (tube-mu_c1) the moment that goes with it
-        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
-        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
-        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         tube_Hk_a_1_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_z
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
+            axis_y_tube_axes2_z*tube_q_y + axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z -
+            axis_y_tube_axes2_y*tube_q_z
         )
         tube_Hk_a_1_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_x
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_q_z +
+            axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
+            - axis_y_tube_axes2_z*tube_q_x
         )
         tube_Hk_a_1_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_y
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_q_x +
+            axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
+            - axis_y_tube_axes2_x*tube_q_y
         )
         # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-        tube_gamma_c1 = tube_rel_o_y - tube_f_c1_t_4*tube_nu_1 - tube_f_c1_t_5*tube_nu_3
-        # (tube-mu_c2) the moment that goes with it
-        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
-        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
-        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
+        tube_gamma_c1 = tube_rel_o_in_axes2_y - tube_m1_c1_t*tube_nu_1 - tube_m3_c1_t*tube_nu_3
         # (tube-Hk_a_2) moment of the column's unit force about the platform origin
         tube_Hk_a_2_x = (
-        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_z
+        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z +
+            axis_z_tube_axes2_z*tube_q_y - axis_x_tube_axes2_x*tube_mu_c2_t -
+            axis_z_tube_axes2_y*tube_q_z
         )
         tube_Hk_a_2_y = (
-        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_x
+        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_q_z +
+            axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_y*tube_mu_c2_t -
+            axis_z_tube_axes2_z*tube_q_x
         )
         tube_Hk_a_2_z = (
-        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_y
+        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_q_x +
+            axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_z*tube_mu_c2_t -
+            axis_z_tube_axes2_x*tube_q_y
         )
         # (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-        tube_gamma_c2 = tube_rel_o_z + tube_f_c2_t_2*tube_nu_3 - tube_f_c2_t*tube_nu_1
-        # (tube-mu_c3) the moment that goes with it
-        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
-        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
-        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
-        tube_mu_c3_in_base_x = (
-        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_y = (
-        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_z = (
-        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
-        )
+        tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 - tube_m1_c2_t*tube_nu_1
         # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-        tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3*tube_nu_1
+        tube_gamma_c3 = (
+        inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3_t*tube_nu_1
+        )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        tube_Q_t_12, tube_Q_t_13, tube_Q_t_14, tube_Q_t_16, tube_Q_t_17, tube_Q_t_19,
-            tube_M_ta_t_4, tube_M_ta_t_5, tube_M_ta_t_6, tube_M_ta_t_7, tube_M_ta_t_8,
-            tube_M_ta_t_9, tube_M_ta_t_10, tube_M_ta_t_11, tube_M_ta_t_12, tube_M_aa_t,
-            tube_M_aa_t_2, tube_M_aa_t_3, tube_M_aa_t_4, tube_M_aa_t_5, tube_M_aa_t_6,
-            tube_U_in_base_x, tube_U_in_base_y, tube_U_in_base_z, tube_Z_a_t, tube_Z_a_t_2,
-            tube_Z_a_t_3,
+        tube_Q_xx, tube_Q_xy, tube_Q_xz, tube_Q_yy, tube_Q_yz, tube_Q_zz, tube_M_ta_t_13,
+            tube_M_ta_t_14, tube_M_ta_t_15, tube_M_ta_t_16, tube_M_ta_t_17, tube_M_ta_t_18,
+            tube_M_ta_t_19, tube_M_ta_t_20, tube_M_ta_t_21, tube_M_aa_t_10, tube_M_aa_t_11,
+            tube_M_aa_t_12, tube_M_aa_t_13, tube_M_aa_t_14, tube_M_aa_t_15, tube_U_x,
+            tube_U_y, tube_U_z, tube_Z_a_t, tube_Z_a_t_2, tube_Z_a_t_3,
         ))
-        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_in_base_x
-        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_in_base_y
-        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        # (tube-n_c1) unit force that the leg's freedoms leave out
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_z
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
+        # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[0][leg]] = tube_gamma_c1
-        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_in_base_x
-        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_in_base_y
-        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        # (tube-n_c2) unit force that the leg's freedoms leave out
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_z
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
         out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
         out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
+        # (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[1][leg]] = tube_gamma_c2
-        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_in_base_x
-        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_in_base_y
-        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_in_base_z
+        # (tube-Hk_a_3) moment of the column's unit force about the platform origin
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
+        # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[2][leg]] = tube_gamma_c3
     (
-    total_tube_xx, total_tube_xy, total_tube_xz, total_tube_yy, total_tube_yz, total_tube_zz,
-        total_tube_xx_2, total_tube_xy_2, total_tube_xz_2, total_tube_yx, total_tube_yy_2,
-        total_tube_yz_2, total_tube_zx, total_tube_zy, total_tube_zz_2, total_tube_xx_3,
-        total_tube_xy_3, total_tube_xz_3, total_tube_yy_3, total_tube_yz_3, total_tube_zz_3,
-        total_tube_x, total_tube_y, total_tube_z, total_tube_x_2, total_tube_y_2, total_tube_z_2,
+    M_tt_tube_xx, M_tt_tube_xy, M_tt_tube_xz, M_tt_tube_yy, M_tt_tube_yz, M_tt_tube_zz,
+        M_ta_tube_xx, M_ta_tube_xy, M_ta_tube_xz, M_ta_tube_yx, M_ta_tube_yy, M_ta_tube_yz,
+        M_ta_tube_zx, M_ta_tube_zy, M_ta_tube_zz, M_aa_tube_xx, M_aa_tube_xy, M_aa_tube_xz,
+        M_aa_tube_yy, M_aa_tube_yz, M_aa_tube_zz, Z_t_tube_x, Z_t_tube_y, Z_t_tube_z, Z_a_tube_x,
+        Z_a_tube_y, Z_a_tube_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star + total_tube_xx - total_ups_xx
-    M_tt_xy = total_tube_xy - total_ups_xy
-    M_tt_xz = total_tube_xz - total_ups_xz
-    M_tt_yy = m_star + total_tube_yy - total_ups_yy
-    M_tt_yz = total_tube_yz - total_ups_yz
-    M_tt_zz = m_star + total_tube_zz - total_ups_zz
+    M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star
+    M_tt_xy = M_tt_tube_xy + M_tt_ups_xy
+    M_tt_xz = M_tt_tube_xz + M_tt_ups_xz
+    M_tt_yy = M_tt_tube_yy + M_tt_ups_yy + m_star
+    M_tt_yz = M_tt_tube_yz + M_tt_ups_yz
+    M_tt_zz = M_tt_tube_zz + M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xx = total_ups_xx_2 - total_tube_xx_2
-    M_ta_xy = h_star_in_base_z + total_tube_xy_2 - total_ups_xy_2
-    M_ta_xz = total_ups_xz_2 - h_star_in_base_y - total_tube_xz_2
-    M_ta_yx = total_ups_yx - h_star_in_base_z - total_tube_yx
-    M_ta_yy = total_tube_yy_2 - total_ups_yy_2
-    M_ta_yz = h_star_in_base_x + total_ups_yz_2 - total_tube_yz_2
-    M_ta_zx = h_star_in_base_y + total_ups_zx - total_tube_zx
-    M_ta_zy = total_tube_zy - h_star_in_base_x - total_ups_zy
-    M_ta_zz = total_tube_zz_2 - total_ups_zz_2
+    M_ta_xx = M_ta_tube_xx + M_ta_ups_xx
+    M_ta_xy = M_ta_tube_xy + M_ta_ups_xy + h_star_z
+    M_ta_xz = M_ta_tube_xz + M_ta_ups_xz - h_star_y
+    M_ta_yx = M_ta_tube_yx + M_ta_ups_yx - h_star_z
+    M_ta_yy = M_ta_tube_yy + M_ta_ups_yy
+    M_ta_yz = M_ta_tube_yz + M_ta_ups_yz + h_star_x
+    M_ta_zx = M_ta_tube_zx + M_ta_ups_zx + h_star_y
+    M_ta_zy = M_ta_tube_zy + M_ta_ups_zy - h_star_x
+    M_ta_zz = M_ta_tube_zz + M_ta_ups_zz
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 + total_tube_xx_3 - total_ups_xx_3
-    M_aa_xy = J_star_t_9 + total_ups_xy_3 - total_tube_xy_3
-    M_aa_xz = J_star_t_10 + total_tube_xz_3 - total_ups_xz_3
-    M_aa_yy = J_star_t_13 - total_tube_yy_3 - total_ups_yy_3
-    M_aa_yz = J_star_t_15 + total_ups_yz_3 - total_tube_yz_3
-    M_aa_zz = J_star_t_17 + total_tube_zz_3 - total_ups_zz_3
+    M_aa_xx = J_star_xx + M_aa_tube_xx + M_aa_ups_xx
+    M_aa_xy = J_star_xy + M_aa_tube_xy + M_aa_ups_xy
+    M_aa_xz = J_star_xz + M_aa_tube_xz + M_aa_ups_xz
+    M_aa_yy = J_star_yy + M_aa_tube_yy + M_aa_ups_yy
+    M_aa_yz = J_star_yz + M_aa_tube_yz + M_aa_ups_yz
+    M_aa_zz = J_star_zz + M_aa_tube_zz + M_aa_ups_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_tube_x + total_ups_x
-    Z_t_y = Z_p_y + total_tube_y + total_ups_y
-    Z_t_z = Z_p_z + total_tube_z + total_ups_z
+    Z_t_x = Z_p_x + Z_t_tube_x + Z_t_ups_x
+    Z_t_y = Z_p_y + Z_t_tube_y + Z_t_ups_y
+    Z_t_z = Z_p_z + Z_t_tube_z + Z_t_ups_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_tube_x_2 + total_ups_x_2
-    Z_a_y = Z_q_in_base_y + total_tube_y_2 + total_ups_y_2
-    Z_a_z = Z_q_in_base_z + total_tube_z_2 + total_ups_z_2
+    Z_a_x = Z_a_tube_x + Z_a_ups_x + Z_q_x
+    Z_a_y = Z_a_tube_y + Z_a_ups_y + Z_q_y
+    Z_a_z = Z_a_tube_z + Z_a_ups_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[6] = M_tt_xy
@@ -3415,6 +3653,7 @@ def _run_dynamics(m, X, V):
     out_M[8] = M_tt_yz
     out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
+    # (M_ta) coupling block of M
     out_M[3] = M_ta_xx
     out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
@@ -3433,6 +3672,7 @@ def _run_dynamics(m, X, V):
     out_M[26] = M_ta_zy
     out_M[17] = M_ta_zz
     out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -3442,9 +3682,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -3456,8 +3698,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_12, J_star_t_14, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_12, J_star_t_14, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3497,48 +3740,49 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_12*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_12*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_12*R_zy
-    J_star_t_4 = J_star_t_14*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_14*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_14*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_12*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_12*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_12*R_zy
+    J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
-    J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_10 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
-    J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_13 = 2.0*J_star_t_11 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_7
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_6*R_xz
+    J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_8
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
+    J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_9
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-            ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+            ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
+            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -3551,143 +3795,137 @@ def _run_M(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = inv_ups_root_2*ups_S_x
+        ups_w_3_y = inv_ups_root_2*ups_S_y
+        ups_w_3_z = inv_ups_root_2*ups_S_z
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
-        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
-        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
+        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_yy = (
-        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
+        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_yy = (
+        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
+            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
         )
-        ups_d_c_yz = (
-        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
-            inv_ups_root_2*ups_J_group_2_yz)
+        ups_d_c_in_axes2_yz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
         )
-        ups_d_c_zz = (
-        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
-            inv_ups_root_2*ups_J_group_2_yy))
+        ups_d_c_in_axes2_zz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy))
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        ups_Q_t = 0.5*ups_d_c_yy
-        ups_Q_t_2 = 0.5*ups_d_c_zz
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z - axis_z_ups_axes2_z*ups_w_3_y
+        axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x - axis_z_ups_axes2_x*ups_w_3_z
+        axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y - axis_z_ups_axes2_y*ups_w_3_x
+        ups_Q_t = 0.5*ups_d_c_in_axes2_yy
+        ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
-            ups_axis_x_x*ups_d_phi_3_t
+        ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
         )
         ups_Q_t_4 = (
-        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
-            ups_axis_x_y*ups_d_phi_3_t
+        ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
-            ups_axis_x_z*ups_d_phi_3_t
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            ups_d_phi_3_in_axes2_xy*ups_w_3_z
         )
-        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
-        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
-        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
-        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
-        ups_Q_t_10 = 2.0*ups_Q_t_9
-        ups_Q_t_11 = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
+        ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x
+        ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y
+        ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z
+        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
+        ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_xy = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
+            - axis_z_ups_axes2_y*ups_Q_t_6
         )
-        ups_Q_t_12 = (
-        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
+        ups_Q_xz = (
+        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
-        ups_Q_t_14 = 2.0*ups_Q_t_13
-        ups_Q_t_15 = (
-        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_yz = (
+        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
-        ups_Q_t_17 = 2.0*ups_Q_t_16
+        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
+        ups_Q_zz = -2.0*ups_Q_t_11
         # (M_ta) coupling block of M
-        ups_M_ta_t = ups_Q_t_11*ups_q_in_base_z
-        ups_M_ta_t_2 = ups_Q_t_12*ups_q_in_base_y
-        ups_M_ta_t_3 = ups_M_ta_t - ups_M_ta_t_2
-        ups_M_ta_t_4 = ups_Q_t_10*ups_q_in_base_z - ups_Q_t_12*ups_q_in_base_x
-        ups_M_ta_t_5 = ups_Q_t_10*ups_q_in_base_y - ups_Q_t_11*ups_q_in_base_x
-        ups_M_ta_t_6 = ups_Q_t_14*ups_q_in_base_z - ups_Q_t_15*ups_q_in_base_y
-        ups_M_ta_t_7 = ups_Q_t_15*ups_q_in_base_x
+        ups_M_ta_t = ups_Q_xy*ups_q_z
+        ups_M_ta_t_2 = ups_Q_xz*ups_q_y
+        ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t
+        ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x
+        ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y
+        ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z
+        ups_M_ta_t_7 = ups_Q_yz*ups_q_x
         ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7
-        ups_M_ta_t_9 = ups_Q_t_11*ups_q_in_base_y - ups_Q_t_14*ups_q_in_base_x
-        ups_M_ta_t_10 = ups_Q_t_15*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_y
-        ups_M_ta_t_11 = ups_Q_t_12*ups_q_in_base_z - ups_Q_t_17*ups_q_in_base_x
+        ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y
+        ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z
+        ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x
         ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2
         # (M_aa) rotational block of M
-        ups_M_aa_t = ups_M_ta_t_6*ups_q_in_base_z - ups_M_ta_t_10*ups_q_in_base_y
-        ups_M_aa_t_2 = ups_M_ta_t_8*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_y
-        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_in_base_y + ups_M_ta_t_9*ups_q_in_base_z
-        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_in_base_z - ups_M_ta_t_11*ups_q_in_base_x
-        ups_M_aa_t_5 = ups_M_ta_t_12*ups_q_in_base_x + ups_M_ta_t_5*ups_q_in_base_z
-        ups_M_aa_t_6 = ups_M_ta_t_5*ups_q_in_base_y - ups_M_ta_t_9*ups_q_in_base_x
+        ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z
+        ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y - ups_M_ta_t_8*ups_q_z
+        ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z
+        ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x
+        ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
+        ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
             _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17, ups_M_ta_t_3,
+        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_M_ta_t_3,
             ups_M_ta_t_4, ups_M_ta_t_5, ups_M_ta_t_6, ups_M_ta_t_8, ups_M_ta_t_9,
             ups_M_ta_t_10, ups_M_ta_t_11, ups_M_ta_t_12, ups_M_aa_t, ups_M_aa_t_2,
             ups_M_aa_t_3, ups_M_aa_t_4, ups_M_aa_t_5, ups_M_aa_t_6,
         ))
     (
-    total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
-        total_ups_xx_2, total_ups_xy_2, total_ups_xz_2, total_ups_yx, total_ups_yy_2,
-        total_ups_yz_2, total_ups_zx, total_ups_zy, total_ups_zz_2, total_ups_xx_3,
-        total_ups_xy_3, total_ups_xz_3, total_ups_yy_3, total_ups_yz_3, total_ups_zz_3,
+    M_tt_ups_xx, M_tt_ups_xy, M_tt_ups_xz, M_tt_ups_yy, M_tt_ups_yz, M_tt_ups_zz, M_ta_ups_xx,
+        M_ta_ups_xy, M_ta_ups_xz, M_ta_ups_yx, M_ta_ups_yy, M_ta_ups_yz, M_ta_ups_zx, M_ta_ups_zy,
+        M_ta_ups_zz, M_aa_ups_xx, M_aa_ups_xy, M_aa_ups_xz, M_aa_ups_yy, M_aa_ups_yz, M_aa_ups_zz,
     ) = sums
     sums = [0.0] * 21
     for leg, k in legs[1]:
         (
-        tube_J_group_2_xx, tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yy,
-            tube_J_group_2_yz, tube_J_group_2_zz, tube_base_frame_xx, tube_base_frame_xy,
-            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
-            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
-            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2, tube_h_3_x,
-            tube_h_3_y, tube_h_3_z, tube_link3_mass, tube_platform_joint_rotation_xx,
+        tube_J_group_2_in_axes2_xx, tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz,
+            tube_J_group_2_in_axes2_yy, tube_J_group_2_in_axes2_yz, tube_J_group_2_in_axes2_zz,
+            tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
+            tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx, tube_base_frame_zy,
+            tube_base_frame_zz, tube_base_point_x, tube_base_point_y, tube_base_point_z,
+            tube_branch_1, tube_branch_2, tube_h_3_in_spec2_x, tube_h_3_in_spec2_y,
+            tube_h_3_in_spec2_z, tube_link3_mass, tube_platform_joint_rotation_xx,
             tube_platform_joint_rotation_xy, tube_platform_joint_rotation_xz,
             tube_platform_joint_rotation_yx, tube_platform_joint_rotation_yy,
             tube_platform_joint_rotation_yz, tube_platform_joint_rotation_zx,
@@ -3695,18 +3933,18 @@ def _run_M(m, X):
             tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -3719,54 +3957,24 @@ def _run_M(m, X):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
-        )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
-        )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
-        )
-        axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
-        )
-        axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
-        )
-        axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
-        )
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -3793,91 +4001,110 @@ def _run_M(m, X):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r3_y = (
-        -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_in_axes2_z = (
+        tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
-            - tube_end_p1_r0_x*tube_s_1)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
+            tube_c_1*tube_n_m1_t_11)
         )
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_z = (
+        tube_n_m2_t = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_y = (
-        -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
-            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_n_m2_t_2 = (
+        tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz)
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
+            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz)
         )
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r3_x = (
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_in_axes2_z = (
         tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
-            - tube_end_p3_r0_x*tube_s_1)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
+            tube_c_1*tube_n_m3_t_2)
         )
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
+        )
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        # (tube-n_c1) unit force that the leg's freedoms leave out
+        tube_n_c1_t = tube_s_1*tube_s_2
+        tube_n_c1_t_2 = tube_c_1*tube_s_2
+        tube_n_c1_x = (
+        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
+            tube_base_frame_xy*tube_n_c1_t_2
+        )
+        tube_n_c1_y = (
+        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
+            tube_base_frame_yy*tube_n_c1_t_2
+        )
+        tube_n_c1_z = (
+        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
+            tube_base_frame_zy*tube_n_c1_t_2
+        )
+        # (tube-n_c2) unit force that the leg's freedoms leave out
+        tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
-        # (tube-mu1_c3) moment along direction 1 that goes with it
-        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        # (tube-mu2_c3) moment along direction 2 that goes with it
+        tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        tube_w_1_t_10 = 1.35*inv_tube_size_c3*tube_f_c3_t
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*inv_tube_size_c3*tube_f_c3_t_2
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_3
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        tube_w_1_t_10 = 1.35*tube_m1_c3_t*tube_mu2_c3
+        tube_w_1_t_11 = 1.35*tube_mu2_c3
+        tube_w_1_t_12 = 1.35*tube_m3_c3*tube_mu2_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -3898,10 +4125,10 @@ def _run_M(m, X):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -3924,23 +4151,23 @@ def _run_M(m, X):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -3948,12 +4175,12 @@ def _run_M(m, X):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -3968,585 +4195,689 @@ def _run_M(m, X):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
-        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
-        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
-        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
-        tube_w_1_t_81 = inv_tube_w_1_t_157*tube_w_1_t_76
-        tube_w_1_t_82 = inv_tube_w_1_t_157*tube_w_1_t_77
-        tube_w_1_t_83 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_78
-        tube_w_1_t_84 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_79
-        tube_w_1_t_85 = 1.35*inv_tube_w_1_t_157*tube_w_1_t_80
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76
+        tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77
+        tube_w_1_t_78 = -tube_c_2*tube_w_1_in_axes2_y
+        # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
+        tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_m1_w_1 = 1.35*inv_tube_w_1_t_75*tube_m1_w_1_t
+        # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
+        tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_m2_w_1 = 1.35*inv_tube_w_1_t_75*tube_m2_w_1_t
+        # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
+        tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_m3_w_1 = 1.35*inv_tube_w_1_t_75*tube_m3_w_1_t
         # (tube-w_2) force part of reciprocal wrench 2
-        tube_w_2_t = inv_tube_w_1_t_16*inv_tube_w_1_t_57*tube_w_1_t_17
+        tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17
         tube_w_2_t_2 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_16*tube_w_1_t_21 - tube_w_1_t_37*tube_w_2_t)
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 - tube_w_1_t_37*tube_w_2_t)
         )
         tube_w_2_t_3 = (
-        inv_tube_w_1_t_129*(tube_w_1_t_41*tube_w_2_t + tube_w_1_t_53*tube_w_2_t_2 -
-            inv_tube_w_1_t_16*tube_w_1_t_25)
+        inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t + tube_w_1_t_53*tube_w_2_t_2 -
+            inv_tube_w_1_t_13*tube_w_1_t_25)
         )
         tube_w_2_t_4 = (
-        inv_tube_w_1_t_157*(inv_tube_w_1_t_16*tube_w_1_t_29 + tube_w_1_t_69*tube_w_2_t_3 -
+        inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 + tube_w_1_t_69*tube_w_2_t_3 -
             tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2)
         )
-        tube_w_2_t_5 = (
-        inv_tube_w_1_t_16*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 +
+        tube_w_2_in_axes2_y = (
+        inv_tube_w_1_t_13*tube_w_1_t_14 + tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 +
             tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4
         )
-        tube_w_2_t_6 = (
-        inv_tube_w_1_t_95*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4
+        tube_w_2_in_axes2_z = (
+        inv_tube_w_1_t_49*tube_w_2_t_2 + tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4
         )
-        tube_w_2_t_7 = (
-        inv_tube_w_1_t_16*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t + tube_w_1_t_51*tube_w_2_t_2 +
-            tube_w_1_t_66*tube_w_2_t_3 - tube_w_1_t_78*tube_w_2_t_4
+        # (tube-m1_w_2) moment part 1 of reciprocal wrench 2
+        tube_m1_w_2_t = (
+        inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t + tube_w_1_t_51*tube_w_2_t_2 +
+            tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4
         )
-        tube_w_2_t_8 = 1.35*tube_w_2_t_7
-        tube_w_2_t_9 = tube_w_1_t_67*tube_w_2_t_3 + tube_w_1_t_79*tube_w_2_t_4
-        tube_w_2_t_10 = 1.35*tube_w_2_t_9
-        tube_w_2_t_11 = (
-        inv_tube_w_1_t_16*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
-            tube_w_1_t_68*tube_w_2_t_3 - tube_w_1_t_80*tube_w_2_t_4
+        tube_m1_w_2 = 1.35*tube_m1_w_2_t
+        # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
+        tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3
+        tube_m2_w_2 = -1.35*tube_m2_w_2_t
+        # (tube-m3_w_2) moment part 3 of reciprocal wrench 2
+        tube_m3_w_2_t = (
+        inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
+            tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4
         )
-        tube_w_2_t_12 = 1.35*tube_w_2_t_11
-        # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t_86 = tube_s_2*tube_w_1_t_81
-        tube_w_1_t_87 = tube_c_2*tube_w_1_t_81
-        # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_d_alpha_1_xz = tube_s_2*tube_w_1_t_82
-        tube_d_alpha_1_yz = tube_c_2*tube_w_1_t_82
-        # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_d_acc_3_t = tube_root_2*tube_w_2_t_5
-        tube_d_acc_3_t_2 = tube_root_2*tube_w_2_t_6
-        tube_d_acc_3_t_3 = tube_root_2*tube_w_1_t_87
-        tube_d_acc_3_t_4 = tube_d_alpha_1_yz*tube_root_2
-        # (tube-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        tube_d_phi_3_t = tube_h_3_y*tube_w_1_t_87 - tube_h_3_z*tube_w_2_t_5
-        tube_d_phi_3_t_2 = tube_d_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_w_2_t_6
-        # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_d_N_2_zy = (
-        tube_J_group_2_xz*tube_w_1_t_86 + tube_J_group_2_zz*tube_w_2_t_5 +
-            tube_d_acc_3_t*tube_h_3_x + tube_root_2*(tube_d_acc_3_t*tube_link3_mass +
-            tube_h_3_x*tube_w_2_t_5 - tube_h_3_y*tube_w_1_t_86) - tube_J_group_2_yz*tube_w_1_t_87
-        )
-        tube_d_N_2_zz = (
-        tube_J_group_2_xz*tube_d_alpha_1_xz + tube_J_group_2_zz*tube_w_2_t_6 +
-            tube_d_acc_3_t_2*tube_h_3_x + tube_root_2*(tube_d_acc_3_t_2*tube_link3_mass +
-            tube_h_3_x*tube_w_2_t_6 - tube_d_alpha_1_xz*tube_h_3_y) -
-            tube_J_group_2_yz*tube_d_alpha_1_yz
-        )
-        # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        tube_d_Gamma_1_t = tube_c_2*tube_h_3_y
-        tube_d_Gamma_1_t_2 = (
-        tube_c_2*(tube_J_group_2_xy*tube_w_1_t_86 + tube_J_group_2_yz*tube_w_2_t_5 -
-            tube_J_group_2_yy*tube_w_1_t_87 - tube_d_acc_3_t_3*tube_h_3_x -
-            tube_root_2*(tube_d_acc_3_t_3*tube_link3_mass + tube_h_3_x*tube_w_1_t_87 -
-            tube_h_3_z*tube_w_1_t_86))
-        )
-        tube_d_Gamma_1_y = (
-        tube_s_2*(tube_J_group_2_xx*tube_w_1_t_86 + tube_J_group_2_xz*tube_w_2_t_5 -
-            tube_J_group_2_xy*tube_w_1_t_87 - tube_d_acc_3_t*tube_h_3_y -
-            tube_d_acc_3_t_3*tube_h_3_z) - tube_d_Gamma_1_t_2
-        )
-        tube_d_Gamma_1_t_3 = (
-        tube_c_2*(tube_J_group_2_xy*tube_d_alpha_1_xz + tube_J_group_2_yz*tube_w_2_t_6 -
-            tube_J_group_2_yy*tube_d_alpha_1_yz - tube_d_acc_3_t_4*tube_h_3_x -
-            tube_root_2*(tube_d_acc_3_t_4*tube_link3_mass + tube_d_alpha_1_yz*tube_h_3_x -
-            tube_d_alpha_1_xz*tube_h_3_z))
-        )
-        tube_d_Gamma_1_z = (
-        tube_s_2*(tube_J_group_2_xx*tube_d_alpha_1_xz + tube_J_group_2_xz*tube_w_2_t_6 -
-            tube_J_group_2_xy*tube_d_alpha_1_yz - tube_d_acc_3_t_2*tube_h_3_y -
-            tube_d_acc_3_t_4*tube_h_3_z) - tube_d_Gamma_1_t_3
-        )
-        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_d_G_yz = tube_d_Gamma_1_z*tube_w_1_t_81 + tube_d_N_2_zz*tube_w_2_t_5
-        # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
-        tube_Q_t = tube_d_Gamma_1_y*tube_w_1_t_81 + tube_d_N_2_zy*tube_w_2_t_5 - tube_link3_mass
-        tube_Q_t_2 = 0.5*tube_Q_t
-        tube_Q_t_3 = tube_d_Gamma_1_z*tube_w_1_t_82 + tube_d_N_2_zz*tube_w_2_t_6 - tube_link3_mass
-        tube_Q_t_4 = 0.5*tube_Q_t_3
-        tube_Q_t_5 = (
-        axis_y_tube_axes2_in_base_x*tube_Q_t_2 + axis_z_tube_axes2_in_base_x*tube_d_G_yz -
-            axis_x_tube_axes2_x*tube_d_phi_3_t
-        )
-        tube_Q_t_6 = (
-        axis_y_tube_axes2_in_base_y*tube_Q_t_2 + axis_z_tube_axes2_in_base_y*tube_d_G_yz -
-            axis_x_tube_axes2_y*tube_d_phi_3_t
-        )
-        tube_Q_t_7 = (
-        axis_y_tube_axes2_in_base_z*tube_Q_t_2 + axis_z_tube_axes2_in_base_z*tube_d_G_yz -
-            axis_x_tube_axes2_z*tube_d_phi_3_t
-        )
-        tube_Q_t_8 = axis_z_tube_axes2_in_base_x*tube_Q_t_4 - axis_x_tube_axes2_x*tube_d_phi_3_t_2
-        tube_Q_t_9 = axis_z_tube_axes2_in_base_y*tube_Q_t_4 - axis_x_tube_axes2_y*tube_d_phi_3_t_2
-        tube_Q_t_10 = (
-        axis_z_tube_axes2_in_base_z*tube_Q_t_4 - axis_x_tube_axes2_z*tube_d_phi_3_t_2
-        )
-        tube_Q_t_11 = (
-        axis_y_tube_axes2_in_base_x*tube_Q_t_5 + axis_z_tube_axes2_in_base_x*tube_Q_t_8
-        )
-        tube_Q_t_12 = 2.0*tube_Q_t_11 + tube_link3_mass
-        tube_Q_t_13 = (
-        axis_y_tube_axes2_in_base_x*tube_Q_t_6 + axis_y_tube_axes2_in_base_y*tube_Q_t_5 +
-            axis_z_tube_axes2_in_base_x*tube_Q_t_9 + axis_z_tube_axes2_in_base_y*tube_Q_t_8
-        )
-        tube_Q_t_14 = (
-        axis_y_tube_axes2_in_base_x*tube_Q_t_7 + axis_y_tube_axes2_in_base_z*tube_Q_t_5 +
-            axis_z_tube_axes2_in_base_x*tube_Q_t_10 + axis_z_tube_axes2_in_base_z*tube_Q_t_8
-        )
-        tube_Q_t_15 = (
-        axis_y_tube_axes2_in_base_y*tube_Q_t_6 + axis_z_tube_axes2_in_base_y*tube_Q_t_9
-        )
-        tube_Q_t_16 = 2.0*tube_Q_t_15 + tube_link3_mass
-        tube_Q_t_17 = (
-        axis_y_tube_axes2_in_base_y*tube_Q_t_7 + axis_y_tube_axes2_in_base_z*tube_Q_t_6 +
-            axis_z_tube_axes2_in_base_y*tube_Q_t_10 + axis_z_tube_axes2_in_base_z*tube_Q_t_9
-        )
-        tube_Q_t_18 = (
-        axis_y_tube_axes2_in_base_z*tube_Q_t_7 + axis_z_tube_axes2_in_base_z*tube_Q_t_10
-        )
-        tube_Q_t_19 = 2.0*tube_Q_t_18 + tube_link3_mass
-        # (tube-o_2) moment part of reciprocal wrench 2
-        tube_o_2_x = tube_end_p2_r3_y*tube_w_2_t_10 - tube_end_p3_r1_x*tube_w_2_t_12
-        tube_o_2_y = -tube_end_p1_r1_x*tube_w_2_t_8 - tube_end_p2_r3_x*tube_w_2_t_10
-        tube_o_2_z = tube_end_p1_r3_y*tube_w_2_t_8 + tube_end_p3_r3_x*tube_w_2_t_12
+        tube_m3_w_2 = 1.35*tube_m3_w_2_t
         # (tube-o_1) moment part of reciprocal wrench 1
-        tube_o_1_x = -tube_end_p2_r3_y*tube_w_1_t_84 - tube_end_p3_r1_x*tube_w_1_t_85
-        tube_o_1_y = tube_end_p2_r3_x*tube_w_1_t_84 - tube_end_p1_r1_x*tube_w_1_t_83
-        tube_o_1_z = tube_end_p1_r3_y*tube_w_1_t_83 + tube_end_p3_r3_x*tube_w_1_t_85
-        tube_o_1_t = tube_c_2*tube_o_1_x
-        tube_o_1_t_2 = tube_o_1_y*tube_s_2
-        tube_o_1_t_3 = tube_c_2*tube_o_1_y
-        tube_o_1_t_4 = tube_o_1_x*tube_s_2
+        tube_o_1_in_axes2_x = (
+        -tube_end_p2_in_axes2_y*tube_m2_w_1 - tube_end_p3_in_axes2_z*tube_m3_w_1
+        )
+        tube_o_1_in_axes2_y = (
+        tube_m2_w_1*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_m1_w_1
+        )
+        tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z + tube_m3_w_1*tube_n_m3_in_axes2_z
+        # (tube-o_2) moment part of reciprocal wrench 2
+        tube_o_2_in_axes2_x = (
+        -tube_end_p2_in_axes2_y*tube_m2_w_2 - tube_end_p3_in_axes2_z*tube_m3_w_2
+        )
+        tube_o_2_in_axes2_y = (
+        tube_m2_w_2*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_m1_w_2
+        )
+        tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z + tube_m3_w_2*tube_n_m3_in_axes2_z
         # (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_dalpha_alpha_1_xz = tube_o_1_z*tube_s_2
-        tube_dalpha_alpha_1_yz = tube_c_2*tube_o_1_z
+        tube_dalpha_alpha_1_t = -tube_c_2*tube_o_1_in_axes2_x
+        tube_dalpha_alpha_1_in_axes2_xy = tube_o_1_in_axes2_y*tube_s_2
+        tube_dalpha_alpha_1_t_2 = -tube_c_2*tube_o_1_in_axes2_y
+        tube_dalpha_alpha_1_in_axes2_xx = tube_o_1_in_axes2_x*tube_s_2
+        tube_dalpha_alpha_1_in_axes2_xz = tube_o_1_in_axes2_z*tube_s_2
+        tube_dalpha_alpha_1_t_3 = -tube_c_2*tube_o_1_in_axes2_z
+        # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        tube_d_alpha_1_in_axes2_xy = tube_s_2*tube_w_1_in_axes2_y
+        tube_d_alpha_1_in_axes2_xz = tube_s_2*tube_w_1_in_axes2_z
+        tube_d_alpha_1_t = -tube_c_2*tube_w_1_in_axes2_z
         # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_dalpha_acc_3_t = tube_o_2_x*tube_root_2
-        tube_dalpha_acc_3_t_2 = tube_o_2_y*tube_root_2
-        tube_dalpha_acc_3_t_3 = tube_o_2_z*tube_root_2
-        tube_dalpha_acc_3_t_4 = tube_o_1_t*tube_root_2
-        tube_dalpha_acc_3_t_5 = tube_o_1_t_3*tube_root_2
-        tube_dalpha_acc_3_t_6 = tube_dalpha_alpha_1_yz*tube_root_2
-        # (tube-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        tube_dalpha_phi_3_t = tube_h_3_y*tube_o_1_t - tube_h_3_z*tube_o_2_x
-        tube_dalpha_phi_3_t_2 = tube_h_3_y*tube_o_1_t_3 - tube_h_3_z*tube_o_2_y
-        tube_dalpha_phi_3_t_3 = tube_dalpha_alpha_1_yz*tube_h_3_y - tube_h_3_z*tube_o_2_z
+        tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_root_2
+        tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_root_2
+        tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_root_2
+        tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_root_2
+        tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_root_2
+        tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_root_2
+        # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        tube_d_acc_3_in_axes2_yy = tube_root_2*tube_w_2_in_axes2_y
+        tube_d_acc_3_in_axes2_yz = tube_root_2*tube_w_2_in_axes2_z
+        tube_d_acc_3_in_axes2_zy = tube_root_2*tube_w_1_t_78
+        tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_root_2
         # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_dalpha_N_2_zx = (
-        tube_J_group_2_xz*tube_o_1_t_4 + tube_J_group_2_zz*tube_o_2_x +
-            tube_dalpha_acc_3_t*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t*tube_link3_mass +
-            tube_h_3_x*tube_o_2_x - tube_h_3_y*tube_o_1_t_4) - tube_J_group_2_yz*tube_o_1_t
+        tube_dalpha_N_2_in_axes2_zx = (
+        tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
+            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
+            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t
         )
-        tube_dalpha_N_2_zy = (
-        tube_J_group_2_xz*tube_o_1_t_2 + tube_J_group_2_zz*tube_o_2_y +
-            tube_dalpha_acc_3_t_2*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t_2*tube_link3_mass
-            + tube_h_3_x*tube_o_2_y - tube_h_3_y*tube_o_1_t_2) - tube_J_group_2_yz*tube_o_1_t_3
+        tube_dalpha_N_2_in_axes2_zy = (
+        tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
+            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
+            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2
         )
-        tube_dalpha_N_2_zz = (
-        tube_J_group_2_xz*tube_dalpha_alpha_1_xz + tube_J_group_2_zz*tube_o_2_z +
-            tube_dalpha_acc_3_t_3*tube_h_3_x + tube_root_2*(tube_dalpha_acc_3_t_3*tube_link3_mass
-            + tube_h_3_x*tube_o_2_z - tube_dalpha_alpha_1_xz*tube_h_3_y) -
-            tube_J_group_2_yz*tube_dalpha_alpha_1_yz
+        tube_dalpha_N_2_in_axes2_zz = (
+        tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
+            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
+            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3
+        )
+        # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+        tube_d_N_2_in_axes2_zy = (
+        tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
+            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y -
+            tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_w_1_t_78
+        )
+        tube_d_N_2_in_axes2_zz = (
+        tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
+            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
+            tube_root_2*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
+            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
+            tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t
         )
         # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         tube_dalpha_Gamma_1_t = (
-        tube_c_2*(tube_J_group_2_xy*tube_o_1_t_4 + tube_J_group_2_yz*tube_o_2_x -
-            tube_J_group_2_yy*tube_o_1_t - tube_dalpha_acc_3_t_4*tube_h_3_x -
-            tube_root_2*(tube_dalpha_acc_3_t_4*tube_link3_mass + tube_h_3_x*tube_o_1_t -
-            tube_h_3_z*tube_o_1_t_4))
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
+            tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z))
         )
-        tube_dalpha_Gamma_1_x = (
-        tube_s_2*(tube_J_group_2_xx*tube_o_1_t_4 + tube_J_group_2_xz*tube_o_2_x -
-            tube_J_group_2_xy*tube_o_1_t - tube_dalpha_acc_3_t*tube_h_3_y -
-            tube_dalpha_acc_3_t_4*tube_h_3_z) - tube_dalpha_Gamma_1_t
+        tube_dalpha_Gamma_1_in_axes2_x = (
+        tube_dalpha_Gamma_1_t +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
+            tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z)
         )
         tube_dalpha_Gamma_1_t_2 = (
-        tube_c_2*(tube_J_group_2_xy*tube_o_1_t_2 + tube_J_group_2_yz*tube_o_2_y -
-            tube_J_group_2_yy*tube_o_1_t_3 - tube_dalpha_acc_3_t_5*tube_h_3_x -
-            tube_root_2*(tube_dalpha_acc_3_t_5*tube_link3_mass + tube_h_3_x*tube_o_1_t_3 -
-            tube_h_3_z*tube_o_1_t_2))
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z))
         )
-        tube_dalpha_Gamma_1_y = (
-        tube_s_2*(tube_J_group_2_xx*tube_o_1_t_2 + tube_J_group_2_xz*tube_o_2_y -
-            tube_J_group_2_xy*tube_o_1_t_3 - tube_dalpha_acc_3_t_2*tube_h_3_y -
-            tube_dalpha_acc_3_t_5*tube_h_3_z) - tube_dalpha_Gamma_1_t_2
+        tube_dalpha_Gamma_1_in_axes2_y = (
+        tube_dalpha_Gamma_1_t_2 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
+            tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z)
         )
         tube_dalpha_Gamma_1_t_3 = (
-        tube_c_2*(tube_J_group_2_xy*tube_dalpha_alpha_1_xz + tube_J_group_2_yz*tube_o_2_z -
-            tube_J_group_2_yy*tube_dalpha_alpha_1_yz - tube_dalpha_acc_3_t_6*tube_h_3_x -
-            tube_root_2*(tube_dalpha_acc_3_t_6*tube_link3_mass + tube_dalpha_alpha_1_yz*tube_h_3_x
-            - tube_dalpha_alpha_1_xz*tube_h_3_z))
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
+            tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
+            tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
         )
-        tube_dalpha_Gamma_1_z = (
-        tube_s_2*(tube_J_group_2_xx*tube_dalpha_alpha_1_xz + tube_J_group_2_xz*tube_o_2_z -
-            tube_J_group_2_xy*tube_dalpha_alpha_1_yz - tube_dalpha_acc_3_t_3*tube_h_3_y -
-            tube_dalpha_acc_3_t_6*tube_h_3_z) - tube_dalpha_Gamma_1_t_3
+        tube_dalpha_Gamma_1_in_axes2_z = (
+        tube_dalpha_Gamma_1_t_3 +
+            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
+            tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
+            tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
+        )
+        # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        tube_d_Gamma_1_in_axes2_x = tube_c_2*tube_h_3_in_spec2_y
+        tube_d_Gamma_1_t = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
+            tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z))
+        )
+        tube_d_Gamma_1_in_axes2_y = (
+        tube_d_Gamma_1_t + tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xy +
+            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
+            tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
+            tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z)
+        )
+        tube_d_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
+            tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
+            tube_root_2*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_d_alpha_1_t*tube_h_3_in_spec2_x -
+            tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
+        )
+        tube_d_Gamma_1_in_axes2_z = (
+        tube_d_Gamma_1_t_2 + tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
+            tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
+            tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
+            tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
         )
         # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_yx = tube_dalpha_Gamma_1_x*tube_w_1_t_81 + tube_dalpha_N_2_zx*tube_w_2_t_5
-        tube_dalpha_G_yy = tube_dalpha_Gamma_1_y*tube_w_1_t_81 + tube_dalpha_N_2_zy*tube_w_2_t_5
-        tube_dalpha_G_yz = tube_dalpha_Gamma_1_z*tube_w_1_t_81 + tube_dalpha_N_2_zz*tube_w_2_t_5
-        tube_dalpha_G_zx = tube_dalpha_Gamma_1_x*tube_w_1_t_82 + tube_dalpha_N_2_zx*tube_w_2_t_6
-        tube_dalpha_G_zy = tube_dalpha_Gamma_1_y*tube_w_1_t_82 + tube_dalpha_N_2_zy*tube_w_2_t_6
-        tube_dalpha_G_zz = tube_dalpha_Gamma_1_z*tube_w_1_t_82 + tube_dalpha_N_2_zz*tube_w_2_t_6
-        # (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        tube_dalpha_c_in_base_x = (
-        axis_x_tube_axes2_x*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zx
+        tube_dalpha_G_in_axes2_yx = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y +
+            tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_y
         )
-        tube_dalpha_c_in_base_y = (
-        axis_x_tube_axes2_y*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zx
+        tube_dalpha_G_in_axes2_yy = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
+            tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_y
         )
-        tube_dalpha_c_in_base_z = (
-        axis_x_tube_axes2_z*tube_dalpha_phi_3_t - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yx -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zx
+        tube_dalpha_G_in_axes2_yz = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y +
+            tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_y
         )
-        tube_dalpha_c_in_base_x_2 = (
-        axis_x_tube_axes2_x*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zy
+        tube_dalpha_G_in_axes2_zx = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_z +
+            tube_dalpha_N_2_in_axes2_zx*tube_w_2_in_axes2_z
         )
-        tube_dalpha_c_in_base_y_2 = (
-        axis_x_tube_axes2_y*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zy
+        tube_dalpha_G_in_axes2_zy = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_w_1_in_axes2_z +
+            tube_dalpha_N_2_in_axes2_zy*tube_w_2_in_axes2_z
         )
-        tube_dalpha_c_in_base_z_2 = (
-        axis_x_tube_axes2_z*tube_dalpha_phi_3_t_2 - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yy -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zy
+        tube_dalpha_G_in_axes2_zz = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
+            tube_dalpha_N_2_in_axes2_zz*tube_w_2_in_axes2_z
         )
-        tube_dalpha_c_in_base_x_3 = (
-        axis_x_tube_axes2_x*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_x*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_zz
-        )
-        tube_dalpha_c_in_base_y_3 = (
-        axis_x_tube_axes2_y*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_y*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_zz
-        )
-        tube_dalpha_c_in_base_z_3 = (
-        axis_x_tube_axes2_z*tube_dalpha_phi_3_t_3 - axis_y_tube_axes2_in_base_z*tube_dalpha_G_yz -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_zz
-        )
-        # (M_ta) coupling block of M
-        tube_M_ta_t = tube_Q_t_13*tube_q_in_base_z
-        tube_M_ta_t_2 = tube_Q_t_14*tube_q_in_base_y
-        tube_M_ta_t_3 = tube_Q_t_17*tube_q_in_base_x
-        tube_M_ta_t_4 = (
-        tube_M_ta_t + axis_x_tube_axes2_x*tube_dalpha_c_in_base_x +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_x_3 - tube_M_ta_t_2
-        )
-        tube_M_ta_t_5 = (
-        tube_Q_t_12*tube_q_in_base_z - axis_x_tube_axes2_y*tube_dalpha_c_in_base_x -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_x_3 - tube_Q_t_14*tube_q_in_base_x
-        )
-        tube_M_ta_t_6 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_x_3 + tube_Q_t_12*tube_q_in_base_y -
-            tube_Q_t_13*tube_q_in_base_x
-        )
-        tube_M_ta_t_7 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_base_y +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_y_3 + tube_Q_t_16*tube_q_in_base_z -
-            tube_Q_t_17*tube_q_in_base_y
-        )
-        tube_M_ta_t_8 = (
-        tube_M_ta_t - tube_M_ta_t_3 - axis_x_tube_axes2_y*tube_dalpha_c_in_base_y -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_y_3
-        )
-        tube_M_ta_t_9 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_y_3 + tube_Q_t_13*tube_q_in_base_y -
-            tube_Q_t_16*tube_q_in_base_x
-        )
-        tube_M_ta_t_10 = (
-        axis_x_tube_axes2_x*tube_dalpha_c_in_base_z +
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_2 +
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_in_base_z_3 + tube_Q_t_17*tube_q_in_base_z -
-            tube_Q_t_19*tube_q_in_base_y
-        )
-        tube_M_ta_t_11 = (
-        tube_Q_t_14*tube_q_in_base_z - axis_x_tube_axes2_y*tube_dalpha_c_in_base_z -
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_2 -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_in_base_z_3 - tube_Q_t_19*tube_q_in_base_x
-        )
-        tube_M_ta_t_12 = (
-        tube_M_ta_t_3 - tube_M_ta_t_2 - axis_x_tube_axes2_z*tube_dalpha_c_in_base_z -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_2 -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_in_base_z_3
+        # (tube-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_d_G_in_axes2_yz = (
+        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y
         )
         # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_m1_x = tube_dalpha_Gamma_1_x*tube_w_1_t_83 + tube_dalpha_N_2_zx*tube_w_2_t_8
-        tube_dalpha_G_m1_y = tube_dalpha_Gamma_1_y*tube_w_1_t_83 + tube_dalpha_N_2_zy*tube_w_2_t_8
-        tube_dalpha_G_m1_z = tube_dalpha_Gamma_1_z*tube_w_1_t_83 + tube_dalpha_N_2_zz*tube_w_2_t_8
-        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_m2_x = (
-        tube_dalpha_Gamma_1_x*tube_w_1_t_84 - tube_dalpha_N_2_zx*tube_w_2_t_10
+        tube_dalpha_G_m1_in_axes2_x = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m1_w_2
         )
-        tube_dalpha_G_m2_y = (
-        tube_dalpha_Gamma_1_y*tube_w_1_t_84 - tube_dalpha_N_2_zy*tube_w_2_t_10
+        tube_dalpha_G_m1_in_axes2_y = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zy*tube_m1_w_2
         )
-        tube_dalpha_G_m2_z = (
-        tube_dalpha_Gamma_1_z*tube_w_1_t_84 - tube_dalpha_N_2_zz*tube_w_2_t_10
-        )
-        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_m3_x = (
-        tube_dalpha_Gamma_1_x*tube_w_1_t_85 + tube_dalpha_N_2_zx*tube_w_2_t_12
-        )
-        tube_dalpha_G_m3_y = (
-        tube_dalpha_Gamma_1_y*tube_w_1_t_85 + tube_dalpha_N_2_zy*tube_w_2_t_12
-        )
-        tube_dalpha_G_m3_z = (
-        tube_dalpha_Gamma_1_z*tube_w_1_t_85 + tube_dalpha_N_2_zz*tube_w_2_t_12
-        )
-        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_dalpha_G_m_xx = (
-        -tube_dalpha_G_m2_x*tube_end_p2_r3_y - tube_dalpha_G_m3_x*tube_end_p3_r1_x
-        )
-        tube_dalpha_G_m_xy = (
-        -tube_dalpha_G_m2_y*tube_end_p2_r3_y - tube_dalpha_G_m3_y*tube_end_p3_r1_x
-        )
-        tube_dalpha_G_m_xz = (
-        -tube_dalpha_G_m2_z*tube_end_p2_r3_y - tube_dalpha_G_m3_z*tube_end_p3_r1_x
-        )
-        tube_dalpha_G_m_yx = (
-        tube_dalpha_G_m2_x*tube_end_p2_r3_x - tube_dalpha_G_m1_x*tube_end_p1_r1_x
-        )
-        tube_dalpha_G_m_yy = (
-        tube_dalpha_G_m2_y*tube_end_p2_r3_x - tube_dalpha_G_m1_y*tube_end_p1_r1_x
-        )
-        tube_dalpha_G_m_yz = (
-        tube_dalpha_G_m2_z*tube_end_p2_r3_x - tube_dalpha_G_m1_z*tube_end_p1_r1_x
-        )
-        tube_dalpha_G_m_zx = (
-        tube_dalpha_G_m1_x*tube_end_p1_r3_y + tube_dalpha_G_m3_x*tube_end_p3_r3_x
-        )
-        tube_dalpha_G_m_zy = (
-        tube_dalpha_G_m1_y*tube_end_p1_r3_y + tube_dalpha_G_m3_y*tube_end_p3_r3_x
-        )
-        tube_dalpha_G_m_zz = (
-        tube_dalpha_G_m1_z*tube_end_p1_r3_y + tube_dalpha_G_m3_z*tube_end_p3_r3_x
+        tube_dalpha_G_m1_in_axes2_z = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2
         )
         # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        tube_d_G_m1_x = tube_h_3_z*tube_w_2_t_8 - tube_d_Gamma_1_t*tube_w_1_t_83
-        tube_d_G_m1_y = tube_d_Gamma_1_y*tube_w_1_t_83 + tube_d_N_2_zy*tube_w_2_t_8
-        tube_d_G_m1_z = tube_d_Gamma_1_z*tube_w_1_t_83 + tube_d_N_2_zz*tube_w_2_t_8
+        tube_d_G_m1_in_axes2_x = (
+        tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_h_3_in_spec2_z*tube_m1_w_2
+        )
+        tube_d_G_m1_in_axes2_y = (
+        tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 + tube_d_N_2_in_axes2_zy*tube_m1_w_2
+        )
+        tube_d_G_m1_in_axes2_z = (
+        tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_d_N_2_in_axes2_zz*tube_m1_w_2
+        )
+        # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m2_in_axes2_x = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m2_w_2
+        )
+        tube_dalpha_G_m2_in_axes2_y = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zy*tube_m2_w_2
+        )
+        tube_dalpha_G_m2_in_axes2_z = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2
+        )
         # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
-        tube_d_G_m2_x = -tube_d_Gamma_1_t*tube_w_1_t_84 - tube_h_3_z*tube_w_2_t_10
-        tube_d_G_m2_y = tube_d_Gamma_1_y*tube_w_1_t_84 - tube_d_N_2_zy*tube_w_2_t_10
-        tube_d_G_m2_z = tube_d_Gamma_1_z*tube_w_1_t_84 - tube_d_N_2_zz*tube_w_2_t_10
+        tube_d_G_m2_in_axes2_x = (
+        tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_h_3_in_spec2_z*tube_m2_w_2
+        )
+        tube_d_G_m2_in_axes2_y = (
+        tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 + tube_d_N_2_in_axes2_zy*tube_m2_w_2
+        )
+        tube_d_G_m2_in_axes2_z = (
+        tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_d_N_2_in_axes2_zz*tube_m2_w_2
+        )
+        # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m3_in_axes2_x = (
+        tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2
+        )
+        tube_dalpha_G_m3_in_axes2_y = (
+        tube_dalpha_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zy*tube_m3_w_2
+        )
+        tube_dalpha_G_m3_in_axes2_z = (
+        tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2
+        )
         # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
-        tube_d_G_m3_x = tube_h_3_z*tube_w_2_t_12 - tube_d_Gamma_1_t*tube_w_1_t_85
-        tube_d_G_m3_y = tube_d_Gamma_1_y*tube_w_1_t_85 + tube_d_N_2_zy*tube_w_2_t_12
-        tube_d_G_m3_z = tube_d_Gamma_1_z*tube_w_1_t_85 + tube_d_N_2_zz*tube_w_2_t_12
+        tube_d_G_m3_in_axes2_x = (
+        tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_h_3_in_spec2_z*tube_m3_w_2
+        )
+        tube_d_G_m3_in_axes2_y = (
+        tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_d_N_2_in_axes2_zy*tube_m3_w_2
+        )
+        tube_d_G_m3_in_axes2_z = (
+        tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_d_N_2_in_axes2_zz*tube_m3_w_2
+        )
+        # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        tube_dalpha_G_m_in_axes2_xx = (
+        -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_xy = (
+        -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_y*tube_end_p3_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_xz = (
+        -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_z*tube_end_p3_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_yx = (
+        tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_x*tube_end_p1_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_yy = (
+        tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_y*tube_end_p1_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_yz = (
+        tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_z*tube_end_p1_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_zx = (
+        tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_zy = (
+        tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_y*tube_n_m3_in_axes2_z
+        )
+        tube_dalpha_G_m_in_axes2_zz = (
+        tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
+        )
         # (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_d_G_m_xx = -tube_d_G_m2_x*tube_end_p2_r3_y - tube_d_G_m3_x*tube_end_p3_r1_x
-        tube_d_G_m_xy = -tube_d_G_m2_y*tube_end_p2_r3_y - tube_d_G_m3_y*tube_end_p3_r1_x
-        tube_d_G_m_xz = -tube_d_G_m2_z*tube_end_p2_r3_y - tube_d_G_m3_z*tube_end_p3_r1_x
-        tube_d_G_m_yx = tube_d_G_m2_x*tube_end_p2_r3_x - tube_d_G_m1_x*tube_end_p1_r1_x
-        tube_d_G_m_yy = tube_d_G_m2_y*tube_end_p2_r3_x - tube_d_G_m1_y*tube_end_p1_r1_x
-        tube_d_G_m_yz = tube_d_G_m2_z*tube_end_p2_r3_x - tube_d_G_m1_z*tube_end_p1_r1_x
-        tube_d_G_m_zx = tube_d_G_m1_x*tube_end_p1_r3_y + tube_d_G_m3_x*tube_end_p3_r3_x
-        tube_d_G_m_zy = tube_d_G_m1_y*tube_end_p1_r3_y + tube_d_G_m3_y*tube_end_p3_r3_x
-        tube_d_G_m_zz = tube_d_G_m1_z*tube_end_p1_r3_y + tube_d_G_m3_z*tube_end_p3_r3_x
+        tube_d_G_m_in_axes2_xx = (
+        -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_xy = (
+        -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_y*tube_end_p3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_xz = (
+        -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_z*tube_end_p3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_yx = (
+        tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_x*tube_end_p1_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_yy = (
+        tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_y*tube_end_p1_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_yz = (
+        tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_z*tube_end_p1_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_zx = (
+        tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_zy = (
+        tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z
+        )
+        tube_d_G_m_in_axes2_zz = (
+        tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z + tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z
+        )
+        # (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        tube_dalpha_c_in_axes2_xx = (
+        tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_x
+        )
+        tube_dalpha_c_in_axes2_xy = (
+        tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_y
+        )
+        tube_dalpha_c_in_axes2_xz = (
+        tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_o_2_in_axes2_z
+        )
+        # (tube-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        tube_d_c_in_axes2_xy = (
+        tube_h_3_in_spec2_y*tube_w_1_t_78 - tube_h_3_in_spec2_z*tube_w_2_in_axes2_y
+        )
+        tube_d_c_in_axes2_xz = (
+        tube_d_alpha_1_t*tube_h_3_in_spec2_y - tube_h_3_in_spec2_z*tube_w_2_in_axes2_z
+        )
+        # (tube-Q) inertia of the leg at the connection point, without the mass gathered there
+        axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y
+        axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z
+        axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x
+        tube_Q_t = (
+        tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y + tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y
+            - tube_link3_mass
+        )
+        tube_Q_t_2 = 0.5*tube_Q_t
+        tube_Q_t_3 = (
+        tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z + tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z
+            - tube_link3_mass
+        )
+        tube_Q_t_4 = 0.5*tube_Q_t_3
+        tube_Q_t_5 = (
+        tube_Q_t_2*tube_n_c1_x + tube_d_G_in_axes2_yz*tube_n_c2_x -
+            axis_x_tube_axes2_x*tube_d_c_in_axes2_xy
+        )
+        tube_Q_t_6 = (
+        tube_Q_t_2*tube_n_c1_y + tube_d_G_in_axes2_yz*tube_n_c2_y -
+            axis_x_tube_axes2_y*tube_d_c_in_axes2_xy
+        )
+        tube_Q_t_7 = (
+        tube_Q_t_2*tube_n_c1_z + tube_d_G_in_axes2_yz*tube_n_c2_z -
+            axis_x_tube_axes2_z*tube_d_c_in_axes2_xy
+        )
+        tube_Q_t_8 = tube_Q_t_4*tube_n_c2_x - axis_x_tube_axes2_x*tube_d_c_in_axes2_xz
+        tube_Q_t_9 = tube_Q_t_4*tube_n_c2_y - axis_x_tube_axes2_y*tube_d_c_in_axes2_xz
+        tube_Q_t_10 = tube_Q_t_4*tube_n_c2_z - axis_x_tube_axes2_z*tube_d_c_in_axes2_xz
+        tube_Q_t_11 = tube_Q_t_5*tube_n_c1_x + tube_Q_t_8*tube_n_c2_x
+        tube_Q_xx = 2.0*tube_Q_t_11 + tube_link3_mass
+        tube_Q_xy = (
+        tube_Q_t_5*tube_n_c1_y + tube_Q_t_6*tube_n_c1_x + tube_Q_t_8*tube_n_c2_y +
+            tube_Q_t_9*tube_n_c2_x
+        )
+        tube_Q_xz = (
+        tube_Q_t_10*tube_n_c2_x + tube_Q_t_5*tube_n_c1_z + tube_Q_t_7*tube_n_c1_x +
+            tube_Q_t_8*tube_n_c2_z
+        )
+        tube_Q_t_12 = tube_Q_t_6*tube_n_c1_y + tube_Q_t_9*tube_n_c2_y
+        tube_Q_yy = 2.0*tube_Q_t_12 + tube_link3_mass
+        tube_Q_yz = (
+        tube_Q_t_10*tube_n_c2_y + tube_Q_t_6*tube_n_c1_z + tube_Q_t_7*tube_n_c1_y +
+            tube_Q_t_9*tube_n_c2_z
+        )
+        tube_Q_t_13 = tube_Q_t_10*tube_n_c2_z + tube_Q_t_7*tube_n_c1_z
+        tube_Q_zz = 2.0*tube_Q_t_13 + tube_link3_mass
         # (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
-        tube_dalpha_c_m_in_base_x = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_xx - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zx
-        )
-        tube_dalpha_c_m_in_base_y = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_xx - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zx
-        )
-        tube_dalpha_c_m_in_base_x_2 = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_xy - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zy
-        )
-        tube_dalpha_c_m_in_base_y_2 = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_xy - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zy
-        )
-        tube_dalpha_c_m_in_base_x_3 = (
-        -axis_x_tube_axes2_x*tube_dalpha_G_m_xz - axis_y_tube_axes2_in_base_x*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_G_m_zz
-        )
-        tube_dalpha_c_m_in_base_y_3 = (
-        -axis_x_tube_axes2_y*tube_dalpha_G_m_xz - axis_y_tube_axes2_in_base_y*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_y*tube_dalpha_G_m_zz
-        )
-        tube_dalpha_c_m_in_base_z = (
-        axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xx -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yx -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zx) +
-            axis_y_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xy -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yy -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zy) +
-            axis_z_tube_axes2_in_base_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_xz -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_G_m_yz -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_G_m_zz)
+        tube_dalpha_c_m_zz = (
+        axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
+            tube_dalpha_G_m_in_axes2_yx*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_z) +
+            tube_n_c1_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+            tube_dalpha_G_m_in_axes2_yy*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_z) +
+            tube_n_c2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+            tube_dalpha_G_m_in_axes2_yz*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_z)
         )
         # (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without actuation
-        tube_d_c_m_in_base_x = (
-        -axis_x_tube_axes2_x*tube_d_G_m_xx - axis_y_tube_axes2_in_base_x*tube_d_G_m_yx -
-            axis_z_tube_axes2_in_base_x*tube_d_G_m_zx
+        tube_d_c_m_t = (
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx - tube_d_G_m_in_axes2_yx*tube_n_c1_x -
+            tube_d_G_m_in_axes2_zx*tube_n_c2_x
         )
-        tube_d_c_m_in_base_y = (
-        -axis_x_tube_axes2_y*tube_d_G_m_xx - axis_y_tube_axes2_in_base_y*tube_d_G_m_yx -
-            axis_z_tube_axes2_in_base_y*tube_d_G_m_zx
+        tube_d_c_m_t_2 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx - tube_d_G_m_in_axes2_yx*tube_n_c1_y -
+            tube_d_G_m_in_axes2_zx*tube_n_c2_y
         )
-        tube_d_c_m_in_base_z = (
-        -axis_x_tube_axes2_z*tube_d_G_m_xx - axis_y_tube_axes2_in_base_z*tube_d_G_m_yx -
-            axis_z_tube_axes2_in_base_z*tube_d_G_m_zx
+        tube_d_c_m_t_3 = (
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy - tube_d_G_m_in_axes2_yy*tube_n_c1_x -
+            tube_d_G_m_in_axes2_zy*tube_n_c2_x
         )
-        tube_d_c_m_in_base_x_2 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_xy - axis_y_tube_axes2_in_base_x*tube_d_G_m_yy -
-            axis_z_tube_axes2_in_base_x*tube_d_G_m_zy
+        tube_d_c_m_t_4 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy - tube_d_G_m_in_axes2_yy*tube_n_c1_y -
+            tube_d_G_m_in_axes2_zy*tube_n_c2_y
         )
-        tube_d_c_m_in_base_y_2 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_xy - axis_y_tube_axes2_in_base_y*tube_d_G_m_yy -
-            axis_z_tube_axes2_in_base_y*tube_d_G_m_zy
+        tube_d_c_m_t_5 = (
+        -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz - tube_d_G_m_in_axes2_yz*tube_n_c1_x -
+            tube_d_G_m_in_axes2_zz*tube_n_c2_x
         )
-        tube_d_c_m_in_base_z_2 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_xy - axis_y_tube_axes2_in_base_z*tube_d_G_m_yy -
-            axis_z_tube_axes2_in_base_z*tube_d_G_m_zy
+        tube_d_c_m_t_6 = (
+        -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz - tube_d_G_m_in_axes2_yz*tube_n_c1_y -
+            tube_d_G_m_in_axes2_zz*tube_n_c2_y
         )
-        tube_d_c_m_in_base_x_3 = (
-        -axis_x_tube_axes2_x*tube_d_G_m_xz - axis_y_tube_axes2_in_base_x*tube_d_G_m_yz -
-            axis_z_tube_axes2_in_base_x*tube_d_G_m_zz
+        tube_d_c_m_xx = (
+        axis_x_tube_axes2_x*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_x + tube_d_c_m_t_5*tube_n_c2_x
         )
-        tube_d_c_m_in_base_y_3 = (
-        -axis_x_tube_axes2_y*tube_d_G_m_xz - axis_y_tube_axes2_in_base_y*tube_d_G_m_yz -
-            axis_z_tube_axes2_in_base_y*tube_d_G_m_zz
+        tube_d_c_m_xy = (
+        axis_x_tube_axes2_y*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_y + tube_d_c_m_t_5*tube_n_c2_y
         )
-        tube_d_c_m_in_base_z_3 = (
-        -axis_x_tube_axes2_z*tube_d_G_m_xz - axis_y_tube_axes2_in_base_z*tube_d_G_m_yz -
-            axis_z_tube_axes2_in_base_z*tube_d_G_m_zz
+        tube_d_c_m_xz = (
+        axis_x_tube_axes2_z*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_z + tube_d_c_m_t_5*tube_n_c2_z
         )
-        tube_d_c_m_in_base_x_4 = (
-        axis_x_tube_axes2_x*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_x_3
+        tube_d_c_m_yx = (
+        axis_x_tube_axes2_x*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_x +
+            tube_d_c_m_t_6*tube_n_c2_x
         )
-        tube_d_c_m_in_base_y_4 = (
-        axis_x_tube_axes2_y*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_x_3
+        # (M_ta) coupling block of M
+        tube_M_ta_t = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx - tube_dalpha_G_in_axes2_yx*tube_n_c1_x -
+            tube_dalpha_G_in_axes2_zx*tube_n_c2_x
         )
-        tube_d_c_m_in_base_z_4 = (
-        axis_x_tube_axes2_z*tube_d_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_x_3
+        tube_M_ta_t_2 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx - tube_dalpha_G_in_axes2_yx*tube_n_c1_y -
+            tube_dalpha_G_in_axes2_zx*tube_n_c2_y
         )
-        tube_d_c_m_in_base_x_5 = (
-        axis_x_tube_axes2_x*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_y_3
+        tube_M_ta_t_3 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx - tube_dalpha_G_in_axes2_yx*tube_n_c1_z -
+            tube_dalpha_G_in_axes2_zx*tube_n_c2_z
+        )
+        tube_M_ta_t_4 = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy - tube_dalpha_G_in_axes2_yy*tube_n_c1_x -
+            tube_dalpha_G_in_axes2_zy*tube_n_c2_x
+        )
+        tube_M_ta_t_5 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy - tube_dalpha_G_in_axes2_yy*tube_n_c1_y -
+            tube_dalpha_G_in_axes2_zy*tube_n_c2_y
+        )
+        tube_M_ta_t_6 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy - tube_dalpha_G_in_axes2_yy*tube_n_c1_z -
+            tube_dalpha_G_in_axes2_zy*tube_n_c2_z
+        )
+        tube_M_ta_t_7 = (
+        axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz - tube_dalpha_G_in_axes2_yz*tube_n_c1_x -
+            tube_dalpha_G_in_axes2_zz*tube_n_c2_x
+        )
+        tube_M_ta_t_8 = (
+        axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz - tube_dalpha_G_in_axes2_yz*tube_n_c1_y -
+            tube_dalpha_G_in_axes2_zz*tube_n_c2_y
+        )
+        tube_M_ta_t_9 = (
+        axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz - tube_dalpha_G_in_axes2_yz*tube_n_c1_z -
+            tube_dalpha_G_in_axes2_zz*tube_n_c2_z
+        )
+        tube_M_ta_t_10 = tube_Q_xy*tube_q_z
+        tube_M_ta_t_11 = tube_Q_xz*tube_q_y
+        tube_M_ta_t_12 = tube_Q_yz*tube_q_x
+        tube_M_ta_t_13 = (
+        tube_M_ta_t_11 - tube_M_ta_t_10 - axis_x_tube_axes2_x*tube_M_ta_t -
+            tube_M_ta_t_4*tube_n_c1_x - tube_M_ta_t_7*tube_n_c2_x
+        )
+        tube_M_ta_t_14 = (
+        tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t - tube_M_ta_t_4*tube_n_c1_y -
+            tube_M_ta_t_7*tube_n_c2_y - tube_Q_xz*tube_q_x
+        )
+        tube_M_ta_t_15 = (
+        tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t - tube_M_ta_t_4*tube_n_c1_z -
+            tube_M_ta_t_7*tube_n_c2_z - tube_Q_xx*tube_q_y
+        )
+        tube_M_ta_t_16 = (
+        tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 - tube_M_ta_t_5*tube_n_c1_x -
+            tube_M_ta_t_8*tube_n_c2_x - tube_Q_yy*tube_q_z
+        )
+        tube_M_ta_t_17 = (
+        tube_M_ta_t_10 - tube_M_ta_t_12 - axis_x_tube_axes2_y*tube_M_ta_t_2 -
+            tube_M_ta_t_5*tube_n_c1_y - tube_M_ta_t_8*tube_n_c2_y
+        )
+        tube_M_ta_t_18 = (
+        tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 - tube_M_ta_t_5*tube_n_c1_z -
+            tube_M_ta_t_8*tube_n_c2_z - tube_Q_xy*tube_q_y
+        )
+        tube_M_ta_t_19 = (
+        tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 - tube_M_ta_t_6*tube_n_c1_x -
+            tube_M_ta_t_9*tube_n_c2_x - tube_Q_yz*tube_q_z
+        )
+        tube_M_ta_t_20 = (
+        tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 - tube_M_ta_t_6*tube_n_c1_y -
+            tube_M_ta_t_9*tube_n_c2_y - tube_Q_zz*tube_q_x
+        )
+        tube_M_ta_t_21 = (
+        tube_M_ta_t_12 - tube_M_ta_t_11 - axis_x_tube_axes2_z*tube_M_ta_t_3 -
+            tube_M_ta_t_6*tube_n_c1_z - tube_M_ta_t_9*tube_n_c2_z
         )
         # (M_aa) rotational block of M
         tube_M_aa_t = (
-        tube_M_ta_t_7*tube_q_in_base_z + tube_d_c_m_in_base_y_4*tube_q_in_base_z -
-            axis_x_tube_axes2_x*tube_dalpha_c_m_in_base_x -
-            axis_y_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_2 -
-            axis_z_tube_axes2_in_base_x*tube_dalpha_c_m_in_base_x_3 -
-            tube_M_ta_t_10*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_y
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx - tube_dalpha_G_m_in_axes2_yx*tube_n_c1_x
+            - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_x
         )
         tube_M_aa_t_2 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_x +
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_2 +
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_x_3 +
-            tube_M_ta_t_8*tube_q_in_base_z + tube_d_c_m_in_base_x_4*tube_q_in_base_z -
-            tube_M_ta_t_11*tube_q_in_base_y - tube_d_c_m_in_base_z_4*tube_q_in_base_x
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx - tube_dalpha_G_m_in_axes2_yx*tube_n_c1_y
+            - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_y
         )
         tube_M_aa_t_3 = (
-        tube_M_ta_t_12*tube_q_in_base_y + tube_M_ta_t_9*tube_q_in_base_z +
-            tube_d_c_m_in_base_x_4*tube_q_in_base_y -
-            axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_x -
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_2 -
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_x_3 -
-            tube_d_c_m_in_base_y_4*tube_q_in_base_x
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy - tube_dalpha_G_m_in_axes2_yy*tube_n_c1_x
+            - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_x
         )
         tube_M_aa_t_4 = (
-        axis_x_tube_axes2_y*tube_dalpha_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_y*tube_dalpha_c_m_in_base_y_3 +
-            tube_M_ta_t_11*tube_q_in_base_x + tube_d_c_m_in_base_x_5*tube_q_in_base_z -
-            tube_M_ta_t_5*tube_q_in_base_z -
-            tube_q_in_base_x*(axis_x_tube_axes2_z*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_d_c_m_in_base_y_3)
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy - tube_dalpha_G_m_in_axes2_yy*tube_n_c1_y
+            - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_y
         )
         tube_M_aa_t_5 = (
-        axis_x_tube_axes2_z*tube_dalpha_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_z*tube_dalpha_c_m_in_base_y_3 +
-            tube_M_ta_t_12*tube_q_in_base_x + tube_M_ta_t_6*tube_q_in_base_z +
-            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_y +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_y_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_y_3) -
-            tube_d_c_m_in_base_x_5*tube_q_in_base_y
+        -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz - tube_dalpha_G_m_in_axes2_yz*tube_n_c1_x
+            - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_x
         )
         tube_M_aa_t_6 = (
-        tube_M_ta_t_6*tube_q_in_base_y +
-            tube_q_in_base_y*(axis_x_tube_axes2_x*tube_d_c_m_in_base_z +
-            axis_y_tube_axes2_in_base_x*tube_d_c_m_in_base_z_2 +
-            axis_z_tube_axes2_in_base_x*tube_d_c_m_in_base_z_3) - tube_dalpha_c_m_in_base_z -
-            tube_M_ta_t_9*tube_q_in_base_x -
-            tube_q_in_base_x*(axis_x_tube_axes2_y*tube_d_c_m_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_d_c_m_in_base_z_2 +
-            axis_z_tube_axes2_in_base_y*tube_d_c_m_in_base_z_3)
+        -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz - tube_dalpha_G_m_in_axes2_yz*tube_n_c1_y
+            - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_y
+        )
+        tube_M_aa_t_7 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx - tube_d_G_m_in_axes2_yx*tube_n_c1_z -
+            tube_d_G_m_in_axes2_zx*tube_n_c2_z
+        )
+        tube_M_aa_t_8 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy - tube_d_G_m_in_axes2_yy*tube_n_c1_z -
+            tube_d_G_m_in_axes2_zy*tube_n_c2_z
+        )
+        tube_M_aa_t_9 = (
+        -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz - tube_d_G_m_in_axes2_yz*tube_n_c1_z -
+            tube_d_G_m_in_axes2_zz*tube_n_c2_z
+        )
+        tube_M_aa_t_10 = (
+        tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z - axis_x_tube_axes2_x*tube_M_aa_t -
+            tube_M_aa_t_3*tube_n_c1_x - tube_M_aa_t_5*tube_n_c2_x - tube_M_ta_t_16*tube_q_z -
+            tube_d_c_m_xz*tube_q_y
+        )
+        tube_M_aa_t_11 = (
+        tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x - axis_x_tube_axes2_y*tube_M_aa_t -
+            tube_M_aa_t_3*tube_n_c1_y - tube_M_aa_t_5*tube_n_c2_y - tube_M_ta_t_17*tube_q_z -
+            tube_d_c_m_xx*tube_q_z
+        )
+        tube_M_aa_t_12 = (
+        tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t -
+            tube_M_aa_t_3*tube_n_c1_z - tube_M_aa_t_5*tube_n_c2_z - tube_M_ta_t_18*tube_q_z -
+            tube_d_c_m_xy*tube_q_x
+        )
+        tube_M_aa_t_13 = (
+        tube_M_ta_t_14*tube_q_z + tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 +
+            tube_d_c_m_t_4*tube_n_c1_z + tube_d_c_m_t_6*tube_n_c2_z) -
+            axis_x_tube_axes2_y*tube_M_aa_t_2 - tube_M_aa_t_4*tube_n_c1_y -
+            tube_M_aa_t_6*tube_n_c2_y - tube_M_ta_t_20*tube_q_x - tube_d_c_m_yx*tube_q_z
+        )
+        tube_M_aa_t_14 = (
+        tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y - axis_x_tube_axes2_z*tube_M_aa_t_2 -
+            tube_M_aa_t_4*tube_n_c1_z - tube_M_aa_t_6*tube_n_c2_z - tube_M_ta_t_21*tube_q_x -
+            tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_y +
+            tube_d_c_m_t_6*tube_n_c2_y)
+        )
+        tube_M_aa_t_15 = (
+        tube_M_ta_t_18*tube_q_x + tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 +
+            tube_M_aa_t_8*tube_n_c1_x + tube_M_aa_t_9*tube_n_c2_x) - tube_dalpha_c_m_zz -
+            tube_M_ta_t_15*tube_q_y - tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 +
+            tube_M_aa_t_8*tube_n_c1_y + tube_M_aa_t_9*tube_n_c2_y)
         )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        tube_Q_t_12, tube_Q_t_13, tube_Q_t_14, tube_Q_t_16, tube_Q_t_17, tube_Q_t_19,
-            tube_M_ta_t_4, tube_M_ta_t_5, tube_M_ta_t_6, tube_M_ta_t_7, tube_M_ta_t_8,
-            tube_M_ta_t_9, tube_M_ta_t_10, tube_M_ta_t_11, tube_M_ta_t_12, tube_M_aa_t,
-            tube_M_aa_t_2, tube_M_aa_t_3, tube_M_aa_t_4, tube_M_aa_t_5, tube_M_aa_t_6,
+        tube_Q_xx, tube_Q_xy, tube_Q_xz, tube_Q_yy, tube_Q_yz, tube_Q_zz, tube_M_ta_t_13,
+            tube_M_ta_t_14, tube_M_ta_t_15, tube_M_ta_t_16, tube_M_ta_t_17, tube_M_ta_t_18,
+            tube_M_ta_t_19, tube_M_ta_t_20, tube_M_ta_t_21, tube_M_aa_t_10, tube_M_aa_t_11,
+            tube_M_aa_t_12, tube_M_aa_t_13, tube_M_aa_t_14, tube_M_aa_t_15,
         ))
     (
-    total_tube_xx, total_tube_xy, total_tube_xz, total_tube_yy, total_tube_yz, total_tube_zz,
-        total_tube_xx_2, total_tube_xy_2, total_tube_xz_2, total_tube_yx, total_tube_yy_2,
-        total_tube_yz_2, total_tube_zx, total_tube_zy, total_tube_zz_2, total_tube_xx_3,
-        total_tube_xy_3, total_tube_xz_3, total_tube_yy_3, total_tube_yz_3, total_tube_zz_3,
+    M_tt_tube_xx, M_tt_tube_xy, M_tt_tube_xz, M_tt_tube_yy, M_tt_tube_yz, M_tt_tube_zz,
+        M_ta_tube_xx, M_ta_tube_xy, M_ta_tube_xz, M_ta_tube_yx, M_ta_tube_yy, M_ta_tube_yz,
+        M_ta_tube_zx, M_ta_tube_zy, M_ta_tube_zz, M_aa_tube_xx, M_aa_tube_xy, M_aa_tube_xz,
+        M_aa_tube_yy, M_aa_tube_yz, M_aa_tube_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star + total_tube_xx - total_ups_xx
-    M_tt_xy = total_tube_xy - total_ups_xy
-    M_tt_xz = total_tube_xz - total_ups_xz
-    M_tt_yy = m_star + total_tube_yy - total_ups_yy
-    M_tt_yz = total_tube_yz - total_ups_yz
-    M_tt_zz = m_star + total_tube_zz - total_ups_zz
+    M_tt_xx = M_tt_tube_xx + M_tt_ups_xx + m_star
+    M_tt_xy = M_tt_tube_xy + M_tt_ups_xy
+    M_tt_xz = M_tt_tube_xz + M_tt_ups_xz
+    M_tt_yy = M_tt_tube_yy + M_tt_ups_yy + m_star
+    M_tt_yz = M_tt_tube_yz + M_tt_ups_yz
+    M_tt_zz = M_tt_tube_zz + M_tt_ups_zz + m_star
     # (M_ta) coupling block of M
-    M_ta_xx = total_ups_xx_2 - total_tube_xx_2
-    M_ta_xy = h_star_in_base_z + total_tube_xy_2 - total_ups_xy_2
-    M_ta_xz = total_ups_xz_2 - h_star_in_base_y - total_tube_xz_2
-    M_ta_yx = total_ups_yx - h_star_in_base_z - total_tube_yx
-    M_ta_yy = total_tube_yy_2 - total_ups_yy_2
-    M_ta_yz = h_star_in_base_x + total_ups_yz_2 - total_tube_yz_2
-    M_ta_zx = h_star_in_base_y + total_ups_zx - total_tube_zx
-    M_ta_zy = total_tube_zy - h_star_in_base_x - total_ups_zy
-    M_ta_zz = total_tube_zz_2 - total_ups_zz_2
+    M_ta_xx = M_ta_tube_xx + M_ta_ups_xx
+    M_ta_xy = M_ta_tube_xy + M_ta_ups_xy + h_star_z
+    M_ta_xz = M_ta_tube_xz + M_ta_ups_xz - h_star_y
+    M_ta_yx = M_ta_tube_yx + M_ta_ups_yx - h_star_z
+    M_ta_yy = M_ta_tube_yy + M_ta_ups_yy
+    M_ta_yz = M_ta_tube_yz + M_ta_ups_yz + h_star_x
+    M_ta_zx = M_ta_tube_zx + M_ta_ups_zx + h_star_y
+    M_ta_zy = M_ta_tube_zy + M_ta_ups_zy - h_star_x
+    M_ta_zz = M_ta_tube_zz + M_ta_ups_zz
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_8 + total_tube_xx_3 - total_ups_xx_3
-    M_aa_xy = J_star_t_9 + total_ups_xy_3 - total_tube_xy_3
-    M_aa_xz = J_star_t_10 + total_tube_xz_3 - total_ups_xz_3
-    M_aa_yy = J_star_t_13 - total_tube_yy_3 - total_ups_yy_3
-    M_aa_yz = J_star_t_15 + total_ups_yz_3 - total_tube_yz_3
-    M_aa_zz = J_star_t_17 + total_tube_zz_3 - total_ups_zz_3
+    M_aa_xx = J_star_xx + M_aa_tube_xx + M_aa_ups_xx
+    M_aa_xy = J_star_xy + M_aa_tube_xy + M_aa_ups_xy
+    M_aa_xz = J_star_xz + M_aa_tube_xz + M_aa_ups_xz
+    M_aa_yy = J_star_yy + M_aa_tube_yy + M_aa_ups_yy
+    M_aa_yz = J_star_yz + M_aa_tube_yz + M_aa_ups_yz
+    M_aa_zz = J_star_zz + M_aa_tube_zz + M_aa_ups_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
     out_M[1] = M_tt_xy
     out_M[6] = M_tt_xy
@@ -4556,6 +4887,7 @@ def _run_M(m, X):
     out_M[8] = M_tt_yz
     out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
+    # (M_ta) coupling block of M
     out_M[3] = M_ta_xx
     out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
@@ -4574,6 +4906,7 @@ def _run_M(m, X):
     out_M[26] = M_ta_zy
     out_M[17] = M_ta_zz
     out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -4591,8 +4924,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -4645,56 +4979,75 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -4707,184 +5060,194 @@ def _run_Z(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        # (ups-W_2) centripetal tensor of link 2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-u_1) centripetal acceleration of the connection point
         ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        ups_u_1_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_u_1_x + axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z
+        )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-u_1) centripetal acceleration of the connection point
-        ups_u_1_t = axis_y_ups_axes2_x*ups_u_1_x
-        ups_u_1_t_2 = axis_y_ups_axes2_y*ups_u_1_y
-        ups_u_1_t_3 = axis_y_ups_axes2_z*ups_u_1_z
-        ups_u_1_tip_z = (
-        axis_z_ups_axes2_in_base_x*ups_u_1_x + axis_z_ups_axes2_in_base_y*ups_u_1_y +
-            axis_z_ups_axes2_in_base_z*ups_u_1_z
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        ups_rel_o_z = ups_u_1_tip_z - ups_bias_z
-        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        ups_qdd_2_o_t = (
-        inv_ups_root_2*(ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_z
+        ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
+        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2
+        ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        ups_alpha_2_o_x = ups_alpha_1_o_t - ups_zeta_2_x
-        ups_alpha_2_o_y = -ups_alpha_1_o_t_2 - ups_zeta_2_y
+        ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
+        ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_xy = -2.0*ups_W_2_xy - ups_qdd_2_o_t
-        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
-        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
-        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_x = (
-        -ups_B_2_o_xy*ups_h_3_z - ups_alpha_1_o_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 +
-            ups_W_2_t_3)
+        ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x
+        ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
+        ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
+        ups_B_2_o_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
         )
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
+        ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
+        ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        ups_acc_3_o_x = (
-        ups_axis_x_x*ups_u_1_x + ups_axis_x_y*ups_u_1_y + ups_axis_x_z*ups_u_1_z - ups_g_r3_x
+        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2
+        ups_acc_3_o_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
+            - ups_g_in_axes2_x
         )
-        ups_acc_3_o_y = ups_u_1_t + ups_u_1_t_2 + ups_u_1_t_3 - ups_g_r3_y
-        ups_acc_3_o_z = ups_u_1_tip_z - ups_g_r1_x
+        ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
+        ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
+        # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_o_in_axes2_x = (
+        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
+            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
+        )
         # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_x = (
-        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_2_o_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_o_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_acc_3_o_y*ups_h_3_y - ups_acc_3_o_z*ups_h_3_z
+        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_o_in_axes2_x = (
+        ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_o_y = (
-        ups_B_2_o_zy*ups_J_group_2_xy + ups_acc_3_o_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_o_xy*ups_J_group_2_yz - ups_B_2_o_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_o_t_2 -
-            ups_acc_3_o_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y
+        ups_mu_2_o_in_axes2_y = (
+        ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_o_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_o_t +
-            ups_Sigma_2_xx*ups_qdd_2_o_t + ups_acc_3_o_x*ups_h_3_z + ups_acc_3_o_y*ups_h_3_x -
-            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_o_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x
+        ups_mu_2_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
+            ups_phi_3_o_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+            - ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_c_o_y = (
-        ups_alpha_1_o_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_o_z - ups_h_3_x*ups_qdd_2_o_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_o_in_axes2_y = (
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+            ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
+            ups_phi_3_o_t_2)
         )
-        ups_c_o_z = (
-        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
+        ups_c_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
+            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-U) velocity and gravity terms of the leg force
-        ups_U_in_base_x = (
-        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z
+        ups_U_x = (
+        axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_x*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_y = (
-        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        ups_U_y = (
+        axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_y*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_y*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_z = (
-        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        ups_U_z = (
+        axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_z*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         # (Z_a) rotational part of Z
-        ups_Z_a_t = ups_U_in_base_z*ups_q_in_base_y - ups_U_in_base_y*ups_q_in_base_z
-        ups_Z_a_t_2 = ups_U_in_base_x*ups_q_in_base_z - ups_U_in_base_z*ups_q_in_base_x
-        ups_Z_a_t_3 = ups_U_in_base_y*ups_q_in_base_x - ups_U_in_base_x*ups_q_in_base_y
+        ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z
+        ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
+        ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
             _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        ups_U_in_base_x, ups_U_in_base_y, ups_U_in_base_z, ups_Z_a_t, ups_Z_a_t_2,
-            ups_Z_a_t_3,
+        ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
         ))
-    total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
+    Z_t_ups_x, Z_t_ups_y, Z_t_ups_z, Z_a_ups_x, Z_a_ups_y, Z_a_ups_z = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx, tube_Sigma_2_yy,
-            tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
-            tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
-            tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
-            tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y,
-            tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-            tube_link3_mass, tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+        tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
+            tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
+            tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
+            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
+            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
+            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
+            tube_h_2_in_spec2_x, tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+            tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
+            tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
             tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
             tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
             tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
@@ -4892,18 +5255,18 @@ def _run_Z(m, X, V):
             tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -4916,53 +5279,68 @@ def _run_Z(m, X, V):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_S_dot_t = tube_s_1*tube_s_2
+        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_xy
         )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_yy
         )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_zy
         )
         axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
         )
         axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
         )
         axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -4990,99 +5368,96 @@ def _run_Z(m, X, V):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_z = (
+        tube_n_m1_t_12 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
-        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
-        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
+        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_x = (
+        tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_y = (
+        tube_n_m2_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_z = (
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
-        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_z = (
+        tube_n_m3_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
-        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
-        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
+        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
+        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
-        # (tube-mu1_c3) moment along direction 1 that goes with it
-        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        # (tube-mu2_c3) moment along direction 2 that goes with it
+        tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        tube_w_1_t_10 = 1.35*inv_tube_size_c3*tube_f_c3_t
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*inv_tube_size_c3*tube_f_c3_t_2
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        tube_w_1_t_10 = 1.35*tube_m1_c3_t*tube_mu2_c3
+        tube_w_1_t_11 = 1.35*tube_mu2_c3
+        tube_w_1_t_12 = 1.35*tube_m3_c3*tube_mu2_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -5103,10 +5478,10 @@ def _run_Z(m, X, V):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -5129,23 +5504,23 @@ def _run_Z(m, X, V):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -5153,12 +5528,12 @@ def _run_Z(m, X, V):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -5173,336 +5548,353 @@ def _run_Z(m, X, V):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
-        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
-        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
-        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
-        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
-        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
         # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_tip_x = (
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
         axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        tube_omega_tip_y = (
-        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
-            axis_y_tube_axes2_in_base_z*omega_z
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_omega_tip_z = (
-        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
-            axis_z_tube_axes2_in_base_z*omega_z
-        )
-        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
         # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_tip_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_S_dot_tip_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_1) rate of joint 1
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_qd_1_t_6 = 1.35*tube_eta_1
+        tube_qd_1_t_7 = 1.35*tube_eta_2
+        tube_qd_1_t_8 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
+            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_4*tube_qd_1_t_7 +
+            tube_qd_1_t_5*tube_qd_1_t_8)
         )
-        tube_S_dot_tip_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
+            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67)
         )
-        # (tube-qd_3) rate of joint 3
-        tube_qd_3_t = 1.35*tube_eta_1
-        tube_qd_3_t_2 = 1.35*tube_eta_2
-        tube_qd_3_t_3 = 1.35*tube_eta_3
-        tube_qd_3_t_4 = (
-        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
-            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
-        tube_qd_3_t_5 = (
-        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
-            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
-            - tube_qd_3_t_4*tube_w_1_t_69)
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t_6*tube_w_1_t_15 +
+            tube_qd_1_t_8*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
         )
-        tube_qd_3_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
-            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
-            + tube_qd_3_t_5*tube_w_1_t_53)
-        )
-        tube_qd_3_t_7 = (
-        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
-            tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
-        )
-        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
-        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
-        # (tube-u_1) centripetal acceleration of the connection point
-        tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
-        tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
-        tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
-        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
-        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
-        tube_W_2_t = tube_omega_1_t*tube_omega_1_t
-        tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2
-        tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8
-        tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2
+        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
+        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        # (tube-u_1) centripetal acceleration of the connection point
+        tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
+        tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
+        tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_root_2*tube_zeta_2_y
-        tube_bias_t_2 = tube_W_2_xy*tube_root_2
-        tube_bias_t_3 = 2.0*tube_S_dot_tip_x
-        tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8
-        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2
-        tube_bias_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_z = 2.0*tube_bias_t + tube_bias_t_5
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2
+        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
+        tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_in_axes2_z = 2.0*tube_bias_t + tube_bias_t_5
         # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        tube_rel_o_y = (
-        axis_y_tube_axes2_in_base_x*tube_u_1_x + axis_y_tube_axes2_in_base_y*tube_u_1_y +
-            axis_y_tube_axes2_in_base_z*tube_u_1_z - tube_bias_y
+        tube_rel_o_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
+            axis_y_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_y
         )
-        tube_rel_o_z = (
-        axis_z_tube_axes2_in_base_x*tube_u_1_x + axis_z_tube_axes2_in_base_y*tube_u_1_y +
-            axis_z_tube_axes2_in_base_z*tube_u_1_z - tube_bias_z
+        tube_rel_o_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_u_1_x + axis_z_tube_axes2_y*tube_u_1_y +
+            axis_z_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_nd_m1_y = (
-        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
-            tube_end_p1_r3_y*tube_omega_tip_x
+        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_nd_m1_in_axes2_y = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_nd_m1_z = (
-        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
-            tube_end_p1_r3_x*tube_qd_3_t_8
+        tube_nd_m1_in_axes2_z = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
-        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
-        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_nd_m2_x = (
-        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
-            tube_end_p2_r3_x*tube_omega_tip_z
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_nd_m2_in_axes2_x = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
-        tube_nd_m2_y = (
-        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_z
+        tube_nd_m2_in_axes2_y = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
-        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t = (
+        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        )
         tube_nu_2_t_2 = (
-        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
-            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
         tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
-        tube_nd_m3_x = (
-        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
-            tube_end_p3_r3_y*tube_omega_tip_x
+        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_nd_m3_in_axes2_x = (
+        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_nd_m3_z = (
-        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
-            tube_end_p3_r3_y*tube_omega_tip_z
+        tube_nd_m3_in_axes2_z = (
+        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
-            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
         )
-        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
-        # (tube-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        tube_qdd_3_o_t = 1.35*tube_nu_1
-        tube_qdd_3_o_t_2 = 1.35*tube_nu_2
-        tube_qdd_3_o_t_3 = 1.35*tube_nu_3
-        tube_qdd_3_o_t_4 = (
-        inv_tube_w_1_t_157*(tube_qdd_3_o_t*tube_w_1_t_78 + tube_qdd_3_o_t_2*tube_w_1_t_79 +
-            tube_qdd_3_o_t_3*tube_w_1_t_80 + tube_rel_o_y*tube_w_1_t_76 +
-            tube_rel_o_z*tube_w_1_t_77)
+        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
+        # (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        tube_qdd_1_o_t = 1.35*tube_nu_1
+        tube_qdd_1_o_t_2 = 1.35*tube_nu_2
+        tube_qdd_1_o_t_3 = 1.35*tube_nu_3
+        tube_qdd_1_o = (
+        inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_o_in_axes2_y + tube_qd_1_t_2*tube_rel_o_in_axes2_z
+            + tube_qd_1_t_3*tube_qdd_1_o_t + tube_qd_1_t_4*tube_qdd_1_o_t_2 +
+            tube_qd_1_t_5*tube_qdd_1_o_t_3)
         )
-        tube_qdd_3_o_t_5 = (
-        inv_tube_w_1_t_129*(tube_qdd_3_o_t*tube_w_1_t_66 + tube_qdd_3_o_t_3*tube_w_1_t_68 +
-            tube_rel_o_y*tube_w_1_t_64 + tube_rel_o_z*tube_w_1_t_65 -
-            tube_qdd_3_o_t_2*tube_w_1_t_67 - tube_qdd_3_o_t_4*tube_w_1_t_69)
+        # (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
+        tube_qdd_2_o_t = (
+        inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_3*tube_w_1_t_68 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_64 + tube_rel_o_in_axes2_z*tube_w_1_t_65 -
+            tube_qdd_1_o*tube_w_1_t_69 - tube_qdd_1_o_t_2*tube_w_1_t_67)
         )
-        tube_qdd_3_o_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_o_z + tube_qdd_3_o_t*tube_w_1_t_51 +
-            tube_qdd_3_o_t_3*tube_w_1_t_52 + tube_qdd_3_o_t_4*tube_w_1_t_58 +
-            tube_qdd_3_o_t_5*tube_w_1_t_53 + tube_rel_o_y*tube_w_1_t_50)
+        tube_qdd_2_o_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o*tube_w_1_t_58 +
+            tube_qdd_1_o_t*tube_w_1_t_51 + tube_qdd_1_o_t_3*tube_w_1_t_52 +
+            tube_qdd_2_o_t*tube_w_1_t_53 + tube_rel_o_in_axes2_y*tube_w_1_t_50)
         )
-        tube_qdd_3_o_t_7 = (
-        tube_qdd_3_o_t*tube_w_1_t_15 + tube_qdd_3_o_t_3*tube_w_1_t_16 +
-            tube_qdd_3_o_t_6*tube_w_1_t_21 + tube_rel_o_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_3_o_t*tube_w_1_t_35 +
-            tube_qdd_3_o_t_3*tube_w_1_t_36 + tube_qdd_3_o_t_4*tube_w_1_t_45 +
-            tube_qdd_3_o_t_5*tube_w_1_t_41 + tube_rel_o_y*tube_w_1_t_34 -
-            tube_qdd_3_o_t_6*tube_w_1_t_37) - tube_qdd_3_o_t_4*tube_w_1_t_29 -
-            tube_qdd_3_o_t_5*tube_w_1_t_25
+        tube_qdd_2_o_t_3 = (
+        tube_qdd_1_o_t*tube_w_1_t_15 + tube_qdd_1_o_t_3*tube_w_1_t_16 +
+            tube_qdd_2_o_t_2*tube_w_1_t_21 + tube_rel_o_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1_o*tube_w_1_t_45 +
+            tube_qdd_1_o_t*tube_w_1_t_35 + tube_qdd_1_o_t_3*tube_w_1_t_36 +
+            tube_qdd_2_o_t*tube_w_1_t_41 + tube_rel_o_in_axes2_y*tube_w_1_t_34 -
+            tube_qdd_2_o_t_2*tube_w_1_t_37) - tube_qdd_1_o*tube_w_1_t_29 -
+            tube_qdd_2_o_t*tube_w_1_t_25
         )
-        tube_qdd_3_o_t_8 = inv_tube_w_1_t_16*tube_qdd_3_o_t_7
+        tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3
         # (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        tube_alpha_1_o_t = tube_qdd_3_o_t_4*tube_s_2
-        tube_alpha_1_o_t_2 = tube_c_2*tube_qdd_3_o_t_4
+        tube_alpha_1_o_in_axes2_x = tube_qdd_1_o*tube_s_2
+        tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o
         # (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        tube_alpha_2_o_x = tube_alpha_1_o_t - tube_zeta_2_x
-        tube_alpha_2_o_y = -tube_alpha_1_o_t_2 - tube_zeta_2_y
+        tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x
+        tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz
         # (tube-B_2_o) remainder of the acceleration tensor of link 2
-        tube_B_2_o_xy = -tube_W_2_xy - tube_qdd_3_o_t_8
-        tube_B_2_o_yx = tube_qdd_3_o_t_8 - tube_W_2_xy
-        tube_B_2_o_zx = tube_zeta_2_y - tube_alpha_2_o_y
-        tube_B_2_o_zy = tube_alpha_2_o_x - tube_zeta_2_x
+        tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o
+        tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o
+        tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
+        tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
         # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x
-        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
-        tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y
-        tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2
-        tube_acc_3_o_x = (
+        tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_acc_3_o_t = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_s_2
+        tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_o_t*tube_s_2
+        tube_acc_3_o_in_axes2_x = (
         axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
-            axis_x_tube_axes2_z*tube_u_1_z - tube_g_r3_x
+            axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x
         )
-        tube_acc_3_o_y = (
-        tube_bias_t_4 + tube_qdd_3_o_t_8*tube_root_2 - tube_bias_t_2 - tube_g_r3_y
+        tube_acc_3_o_in_axes2_y = (
+        tube_bias_t_4 + tube_qdd_2_o*tube_root_2 - tube_bias_t_2 - tube_g_in_axes2_y
         )
-        tube_acc_3_o_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x - tube_alpha_2_o_y*tube_root_2
+        tube_acc_3_o_in_axes2_z = (
+        tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_root_2
+        )
         # (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
-        tube_f_3_o_x = (
-        tube_acc_3_o_x*tube_link3_mass - tube_B_2_o_xy*tube_h_3_z - tube_alpha_1_o_t_2*tube_h_3_y
-            - tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3)
+        tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
+        tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_f_3_o_t_3 = tube_qd_2*tube_qd_2
+        tube_f_3_o_in_axes2_x = (
+        tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y +
+            tube_h_3_in_spec2_x*(-tube_f_3_o_t_2 - tube_f_3_o_t_3) -
+            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
         )
-        tube_f_3_o_y = (
-        tube_B_2_o_yx*tube_h_3_x + tube_acc_3_o_y*tube_link3_mass + tube_h_3_z*(tube_W_2_t +
-            tube_W_2_t_3) - tube_alpha_1_o_t*tube_h_3_y
+        tube_f_3_o_in_axes2_y = (
+        tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_y*tube_link3_mass +
+            tube_h_3_in_spec2_z*(tube_f_3_o_t + tube_f_3_o_t_3) -
+            tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y
         )
-        tube_f_3_o_z = (
-        tube_B_2_o_zx*tube_h_3_x + tube_acc_3_o_z*tube_link3_mass - tube_B_2_o_zy*tube_h_3_z -
-            tube_h_3_y*(tube_W_2_t + tube_W_2_t_2)
+        tube_f_3_o_in_axes2_z = (
+        tube_B_2_o_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_z*tube_link3_mass -
+            tube_B_2_o_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_o_t +
+            tube_f_3_o_t_2)
         )
         # (tube-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        tube_mu_2_o_x = (
-        tube_B_2_o_yx*tube_J_group_2_xz + tube_B_2_o_zy*tube_Sigma_2_yy +
-            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_o_t +
-            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_o_zx*tube_J_group_2_xy -
-            tube_acc_3_o_y*tube_h_3_y - tube_acc_3_o_z*tube_h_3_z
+        tube_mu_2_o_in_axes2_x = (
+        tube_B_2_o_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
+            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z
         )
-        tube_mu_2_o_y = (
-        tube_B_2_o_zy*tube_J_group_2_xy + tube_acc_3_o_x*tube_h_3_y + tube_g_r1_x*tube_h_2_x -
-            tube_B_2_o_xy*tube_J_group_2_yz - tube_B_2_o_zx*tube_Sigma_2_xx -
-            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_o_t_2 -
-            tube_acc_3_o_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y
+        tube_mu_2_o_in_axes2_y = (
+        tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
+            tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - tube_g_in_axes2_x*tube_h_2_in_spec2_y
         )
-        tube_mu_2_o_z = (
-        tube_B_2_o_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t - tube_W_2_t_2) +
-            tube_J_group_2_xz*tube_alpha_1_o_t + tube_acc_3_o_x*tube_h_3_z +
-            tube_acc_3_o_y*tube_h_3_x - tube_B_2_o_xy*tube_Sigma_2_yy -
-            tube_J_group_2_yz*tube_alpha_1_o_t_2 - tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x
+        tube_mu_2_o_in_axes2_z = (
+        tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx + tube_J_group_2_in_axes2_xy*(tube_f_3_o_t
+            - tube_f_3_o_t_2) + tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
+            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
+            tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
+            tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
         # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_o_y = tube_mu_2_o_y - tube_f_3_o_z*tube_root_2
-        tube_N_2_o_z = tube_mu_2_o_z + tube_f_3_o_y*tube_root_2
+        tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_root_2
+        tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_root_2
         # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_G_o_t = inv_tube_w_1_t_16*tube_N_2_o_z
-        tube_G_o_t_2 = inv_tube_w_1_t_57*tube_G_o_t*tube_w_1_t_17
-        tube_G_o_t_3 = inv_tube_w_1_t_95*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
+        tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
+        tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
+        tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 - tube_G_o_t_2*tube_w_1_t_37)
         tube_G_o_t_4 = (
-        inv_tube_w_1_t_129*(tube_G_o_t_2*tube_w_1_t_41 + tube_G_o_t_3*tube_w_1_t_53 -
+        inv_tube_w_1_t_63*(tube_G_o_t_2*tube_w_1_t_41 + tube_G_o_t_3*tube_w_1_t_53 -
             tube_G_o_t*tube_w_1_t_25)
         )
         tube_G_o_t_5 = (
-        inv_tube_w_1_t_157*(tube_G_o_t_2*tube_w_1_t_45 + tube_G_o_t_3*tube_w_1_t_58 +
-            tube_mu_2_o_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 - tube_G_o_t_4*tube_w_1_t_69 -
-            tube_N_2_o_y*tube_c_2)
+        inv_tube_w_1_t_75*(tube_G_o_t_2*tube_w_1_t_45 + tube_G_o_t_3*tube_w_1_t_58 +
+            tube_N_2_o_in_axes2_y*tube_c_2 + tube_mu_2_o_in_axes2_x*tube_s_2 -
+            tube_G_o_t*tube_w_1_t_29 - tube_G_o_t_4*tube_w_1_t_69)
         )
-        tube_G_o_t_6 = (
+        tube_G_o_in_axes2_y = (
         tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
-            tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_w_1_t_76
+            tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_qd_1_t
         )
-        tube_G_o_t_7 = (
-        inv_tube_w_1_t_95*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77
+        tube_G_o_in_axes2_z = (
+        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_qd_1_t_2
         )
-        tube_G_o_t_8 = (
+        # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
-            tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_w_1_t_78
+            tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_qd_1_t_3
         )
-        tube_G_o_t_9 = 1.35*tube_G_o_t_8
-        tube_G_o_t_10 = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_w_1_t_79
-        tube_G_o_t_11 = 1.35*tube_G_o_t_10
-        tube_G_o_t_12 = (
+        tube_G_m1_o = 1.35*tube_G_m1_o_t
+        # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_qd_1_t_4
+        tube_G_m2_o = -1.35*tube_G_m2_o_t
+        # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
-            tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_w_1_t_80
+            tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_qd_1_t_5
         )
-        tube_G_o_t_13 = 1.35*tube_G_o_t_12
-        # (tube-U) velocity and gravity terms of the leg force
-        tube_U_in_base_x = (
-        axis_x_tube_axes2_x*tube_f_3_o_x + axis_y_tube_axes2_in_base_x*tube_G_o_t_6 +
-            axis_z_tube_axes2_in_base_x*tube_G_o_t_7
-        )
-        tube_U_in_base_y = (
-        axis_x_tube_axes2_y*tube_f_3_o_x + axis_y_tube_axes2_in_base_y*tube_G_o_t_6 +
-            axis_z_tube_axes2_in_base_y*tube_G_o_t_7
-        )
-        tube_U_in_base_z = (
-        axis_x_tube_axes2_z*tube_f_3_o_x + axis_y_tube_axes2_in_base_z*tube_G_o_t_6 +
-            axis_z_tube_axes2_in_base_z*tube_G_o_t_7
-        )
+        tube_G_m3_o = 1.35*tube_G_m3_o_t
         # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_G_m_o_x = tube_G_o_t_11*tube_end_p2_r3_y - tube_G_o_t_13*tube_end_p3_r1_x
-        tube_G_m_o_y = -tube_G_o_t_11*tube_end_p2_r3_x - tube_G_o_t_9*tube_end_p1_r1_x
-        tube_G_m_o_z = tube_G_o_t_13*tube_end_p3_r3_x + tube_G_o_t_9*tube_end_p1_r3_y
+        tube_G_m_o_in_axes2_x = (
+        -tube_G_m2_o*tube_end_p2_in_axes2_y - tube_G_m3_o*tube_end_p3_in_axes2_z
+        )
+        tube_G_m_o_in_axes2_y = (
+        tube_G_m2_o*tube_n_m2_in_axes2_y - tube_G_m1_o*tube_end_p1_in_axes2_z
+        )
+        tube_G_m_o_in_axes2_z = (
+        tube_G_m1_o*tube_n_m1_in_axes2_z + tube_G_m3_o*tube_n_m3_in_axes2_z
+        )
+        # (tube-U) velocity and gravity terms of the leg force
+        tube_U_x = (
+        axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_x*tube_G_o_in_axes2_y +
+            axis_z_tube_axes2_x*tube_G_o_in_axes2_z
+        )
+        tube_U_y = (
+        axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_y*tube_G_o_in_axes2_y +
+            axis_z_tube_axes2_y*tube_G_o_in_axes2_z
+        )
+        tube_U_z = (
+        axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x + axis_y_tube_axes2_z*tube_G_o_in_axes2_y +
+            axis_z_tube_axes2_z*tube_G_o_in_axes2_z
+        )
         # (Z_a) rotational part of Z
         tube_Z_a_t = (
-        axis_x_tube_axes2_x*tube_G_m_o_x + axis_y_tube_axes2_in_base_x*tube_G_m_o_y +
-            axis_z_tube_axes2_in_base_x*tube_G_m_o_z + tube_U_in_base_z*tube_q_in_base_y -
-            tube_U_in_base_y*tube_q_in_base_z
+        axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x + axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
+            axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*tube_q_y - tube_U_y*tube_q_z
         )
         tube_Z_a_t_2 = (
-        axis_x_tube_axes2_y*tube_G_m_o_x + axis_y_tube_axes2_in_base_y*tube_G_m_o_y +
-            axis_z_tube_axes2_in_base_y*tube_G_m_o_z + tube_U_in_base_x*tube_q_in_base_z -
-            tube_U_in_base_z*tube_q_in_base_x
+        axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x + axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
+            axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*tube_q_z - tube_U_z*tube_q_x
         )
         tube_Z_a_t_3 = (
-        axis_x_tube_axes2_z*tube_G_m_o_x + axis_y_tube_axes2_in_base_z*tube_G_m_o_y +
-            axis_z_tube_axes2_in_base_z*tube_G_m_o_z + tube_U_in_base_y*tube_q_in_base_x -
-            tube_U_in_base_x*tube_q_in_base_y
+        axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x + axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
+            axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*tube_q_x - tube_U_x*tube_q_y
         )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        tube_U_in_base_x, tube_U_in_base_y, tube_U_in_base_z, tube_Z_a_t, tube_Z_a_t_2,
-            tube_Z_a_t_3,
+        tube_U_x, tube_U_y, tube_U_z, tube_Z_a_t, tube_Z_a_t_2, tube_Z_a_t_3,
         ))
-    (
-    total_tube_x, total_tube_y, total_tube_z, total_tube_x_2, total_tube_y_2, total_tube_z_2,
-    ) = sums
+    Z_t_tube_x, Z_t_tube_y, Z_t_tube_z, Z_a_tube_x, Z_a_tube_y, Z_a_tube_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_tube_x + total_ups_x
-    Z_t_y = Z_p_y + total_tube_y + total_ups_y
-    Z_t_z = Z_p_z + total_tube_z + total_ups_z
+    Z_t_x = Z_p_x + Z_t_tube_x + Z_t_ups_x
+    Z_t_y = Z_p_y + Z_t_tube_y + Z_t_ups_y
+    Z_t_z = Z_p_z + Z_t_tube_z + Z_t_ups_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_tube_x_2 + total_ups_x_2
-    Z_a_y = Z_q_in_base_y + total_tube_y_2 + total_ups_y_2
-    Z_a_z = Z_q_in_base_z + total_tube_z_2 + total_ups_z_2
+    Z_a_x = Z_a_tube_x + Z_a_ups_x + Z_q_x
+    Z_a_y = Z_a_tube_y + Z_a_ups_y + Z_q_y
+    Z_a_z = Z_a_tube_z + Z_a_ups_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -5558,18 +5950,18 @@ def _run_H(m, X):
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -5581,31 +5973,33 @@ def _run_H(m, X):
         # (ups-rho2_1) squared amplitude
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-w_2) reciprocal vector 2
+        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
+        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
+        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
         # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
-        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
-        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y
+        ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
+        ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_2) >
             _TOLERANCE * 1.38293))
         )
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = ups_w_3_x
+        out_H[_H_ups[1][leg]] = ups_w_3_y
+        out_H[_H_ups[2][leg]] = ups_w_3_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
@@ -5666,18 +6060,18 @@ def _run_Hk(m, X):
             tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -5690,54 +6084,24 @@ def _run_Hk(m, X):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
-        )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
-        )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
-        )
-        axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
-        )
-        axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
-        )
-        axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
-        )
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -5764,158 +6128,191 @@ def _run_Hk(m, X):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r3_y = (
-        -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_in_axes2_z = (
+        tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
-            - tube_end_p1_r0_x*tube_s_1)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
+            tube_c_1*tube_n_m1_t_11)
         )
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_z = (
+        tube_n_m2_t = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_y = (
-        -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
-            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_n_m2_t_2 = (
+        tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz)
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
+            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz)
         )
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r3_x = (
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_in_axes2_z = (
         tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
-            - tube_end_p3_r0_x*tube_s_1)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
+            tube_c_1*tube_n_m3_t_2)
         )
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
-        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
+        )
+        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
+        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        # (tube-n_c1) unit force that the leg's freedoms leave out
+        tube_n_c1_t = tube_s_1*tube_s_2
+        tube_n_c1_t_2 = tube_c_1*tube_s_2
+        tube_n_c1_x = (
+        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
+            tube_base_frame_xy*tube_n_c1_t_2
+        )
+        tube_n_c1_y = (
+        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
+            tube_base_frame_yy*tube_n_c1_t_2
+        )
+        tube_n_c1_z = (
+        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
+            tube_base_frame_zy*tube_n_c1_t_2
+        )
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
+        tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
+        tube_mu_c1_in_axes2_z = (
+        -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
+        )
+        # (tube-n_c2) unit force that the leg's freedoms leave out
+        tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
+        tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
+        tube_mu_c2_in_axes2_z = (
+        tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
-        # (tube-mu_c1) the moment that goes with it
-        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
-        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
-        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
+        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        # (tube-mu_c3) the moment that goes with it
+        axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y
+        axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z
+        axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x
+        tube_mu_c3_in_axes2_x = (
+        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        )
+        tube_mu_c3_in_axes2_y = (
+        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        )
+        tube_mu_c3_in_axes2_z = (
+        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c3_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_x +
+            tube_mu_c3_in_axes2_z*tube_n_c2_x
+        )
+        tube_mu_c3_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_y +
+            tube_mu_c3_in_axes2_z*tube_n_c2_y
+        )
+        tube_mu_c3_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_z +
+            tube_mu_c3_in_axes2_z*tube_n_c2_z
+        )
         # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         tube_Hk_a_1_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_z
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_x +
+            tube_mu_c1_in_axes2_z*tube_n_c2_x + tube_n_c1_z*tube_q_y - tube_n_c1_y*tube_q_z
         )
         tube_Hk_a_1_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_x
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_y +
+            tube_mu_c1_in_axes2_z*tube_n_c2_y + tube_n_c1_x*tube_q_z - tube_n_c1_z*tube_q_x
         )
         tube_Hk_a_1_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_y
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_z +
+            tube_mu_c1_in_axes2_z*tube_n_c2_z + tube_n_c1_y*tube_q_x - tube_n_c1_x*tube_q_y
         )
-        # (tube-mu_c2) the moment that goes with it
-        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
-        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
-        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
         # (tube-Hk_a_2) moment of the column's unit force about the platform origin
         tube_Hk_a_2_x = (
-        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_z
+        tube_mu_c2_in_axes2_y*tube_n_c1_x + tube_mu_c2_in_axes2_z*tube_n_c2_x +
+            tube_n_c2_z*tube_q_y - axis_x_tube_axes2_x*tube_mu_c2_t - tube_n_c2_y*tube_q_z
         )
         tube_Hk_a_2_y = (
-        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_x
+        tube_mu_c2_in_axes2_y*tube_n_c1_y + tube_mu_c2_in_axes2_z*tube_n_c2_y +
+            tube_n_c2_x*tube_q_z - axis_x_tube_axes2_y*tube_mu_c2_t - tube_n_c2_z*tube_q_x
         )
         tube_Hk_a_2_z = (
-        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_y
-        )
-        # (tube-mu_c3) the moment that goes with it
-        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
-        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
-        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
-        tube_mu_c3_in_base_x = (
-        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_y = (
-        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_z = (
-        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
+        tube_mu_c2_in_axes2_y*tube_n_c1_z + tube_mu_c2_in_axes2_z*tube_n_c2_z +
+            tube_n_c2_y*tube_q_x - axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y
         )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0))
         )
-        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_in_base_x
-        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_in_base_y
-        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        # (tube-n_c1) unit force that the leg's freedoms leave out
+        out_Hk[_Hk_tube[0][leg]] = tube_n_c1_x
+        out_Hk[_Hk_tube[1][leg]] = tube_n_c1_y
+        out_Hk[_Hk_tube[2][leg]] = tube_n_c1_z
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
-        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_in_base_x
-        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_in_base_y
-        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        # (tube-n_c2) unit force that the leg's freedoms leave out
+        out_Hk[_Hk_tube[6][leg]] = tube_n_c2_x
+        out_Hk[_Hk_tube[7][leg]] = tube_n_c2_y
+        out_Hk[_Hk_tube[8][leg]] = tube_n_c2_z
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
         out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
         out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
-        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_in_base_x
-        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_in_base_y
-        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_in_base_z
+        # (tube-Hk_a_3) moment of the column's unit force about the platform origin
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
     return ok, (out_Hk,)
 
 
@@ -5986,18 +6383,18 @@ def _run_constraint_bias(m, X, V):
             tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -6010,53 +6407,68 @@ def _run_constraint_bias(m, X, V):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_S_dot_t = tube_s_1*tube_s_2
+        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_xy
         )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_yy
         )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_zy
         )
         axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
         )
         axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
         )
         axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -6084,107 +6496,107 @@ def _run_constraint_bias(m, X, V):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_z = (
+        tube_n_m1_t_12 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
-        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
-        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
+        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_x = (
+        tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_y = (
+        tube_n_m2_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_z = (
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
-        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_z = (
+        tube_n_m3_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
-        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
-        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
+        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
+        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
-        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
-        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
-        tube_w_1_t_8 = 1.35*tube_f_c2_t
-        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
         tube_w_1_t_12 = 1.35*tube_mu3_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -6205,10 +6617,10 @@ def _run_constraint_bias(m, X, V):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -6231,23 +6643,23 @@ def _run_constraint_bias(m, X, V):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -6255,12 +6667,12 @@ def _run_constraint_bias(m, X, V):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -6275,162 +6687,167 @@ def _run_constraint_bias(m, X, V):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
-        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
-        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
         # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_tip_x = (
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
         axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        tube_omega_tip_y = (
-        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
-            axis_y_tube_axes2_in_base_z*omega_z
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_omega_tip_z = (
-        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
-            axis_z_tube_axes2_in_base_z*omega_z
-        )
-        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
         # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_tip_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_S_dot_tip_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_1) rate of joint 1
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_qd_1_t = 1.35*tube_eta_1
+        tube_qd_1_t_2 = 1.35*tube_eta_2
+        tube_qd_1_t_3 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
+            inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
+            inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
+            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73 +
+            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74)
         )
-        tube_S_dot_tip_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67)
         )
-        # (tube-qd_3) rate of joint 3
-        tube_qd_3_t = 1.35*tube_eta_1
-        tube_qd_3_t_2 = 1.35*tube_eta_2
-        tube_qd_3_t_3 = 1.35*tube_eta_3
-        tube_qd_3_t_4 = (
-        inv_tube_w_1_t_157*(inv_tube_w_1_t_157*tube_S_dot_tip_y*tube_w_1_t_70 +
-            inv_tube_w_1_t_157*tube_S_dot_tip_z*tube_w_1_t_71 +
-            inv_tube_w_1_t_157*tube_qd_3_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_157*tube_qd_3_t_2*tube_w_1_t_73 +
-            inv_tube_w_1_t_157*tube_qd_3_t_3*tube_w_1_t_74)
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
-        tube_qd_3_t_5 = (
-        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
-            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
-            - tube_qd_3_t_4*tube_w_1_t_69)
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
+            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
         )
-        tube_qd_3_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
-            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
-            + tube_qd_3_t_5*tube_w_1_t_53)
-        )
-        tube_qd_3_t_7 = (
-        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
-            tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
-        )
-        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
-        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
+        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
+        # (tube-W_2) centripetal tensor of link 2
+        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
+        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
         # (tube-u_1) centripetal acceleration of the connection point
-        tube_u_1_x = omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
-        tube_u_1_y = omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
-        tube_u_1_z = omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
-        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
-        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
+        tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
+        tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = 2.0*tube_S_dot_tip_x
-        tube_bias_y = tube_bias_t*tube_qd_3_t_8 - tube_omega_1_t*tube_omega_1_t_2*tube_root_2
-        tube_bias_z = tube_bias_t*tube_omega_1_t_2 + 2.0*tube_root_2*tube_zeta_2_y
-        # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        tube_rel_o_y = (
-        axis_y_tube_axes2_in_base_x*tube_u_1_x + axis_y_tube_axes2_in_base_y*tube_u_1_y +
-            axis_y_tube_axes2_in_base_z*tube_u_1_z - tube_bias_y
+        tube_bias_t = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_in_axes2_y = (
+        tube_bias_t*tube_qd_2 + tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_root_2
         )
-        tube_rel_o_z = (
-        axis_z_tube_axes2_in_base_x*tube_u_1_x + axis_z_tube_axes2_in_base_y*tube_u_1_y +
-            axis_z_tube_axes2_in_base_z*tube_u_1_z - tube_bias_z
+        tube_bias_in_axes2_z = (
+        2.0*tube_W_2_in_axes2_xz*tube_root_2 - tube_bias_t*tube_omega_1_in_axes2_y
+        )
+        # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
+        tube_rel_o_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
+            axis_y_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_y
+        )
+        tube_rel_o_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_u_1_x + axis_z_tube_axes2_y*tube_u_1_y +
+            axis_z_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_nd_m1_y = (
-        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
-            tube_end_p1_r3_y*tube_omega_tip_x
+        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_nd_m1_in_axes2_y = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_nd_m1_z = (
-        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
-            tube_end_p1_r3_x*tube_qd_3_t_8
+        tube_nd_m1_in_axes2_z = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
-        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
-        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_nd_m2_x = (
-        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
-            tube_end_p2_r3_x*tube_omega_tip_z
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_nd_m2_in_axes2_x = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
-        tube_nd_m2_y = (
-        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_z
+        tube_nd_m2_in_axes2_y = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
-        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t = (
+        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        )
         tube_nu_2_t_2 = (
-        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
-            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
         tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
-        tube_nd_m3_x = (
-        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
-            tube_end_p3_r3_y*tube_omega_tip_x
+        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_nd_m3_in_axes2_x = (
+        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_nd_m3_z = (
-        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
-            tube_end_p3_r3_y*tube_omega_tip_z
+        tube_nd_m3_in_axes2_z = (
+        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
-            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
         )
-        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
+        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
         # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-        tube_gamma_c1 = tube_rel_o_y - tube_f_c1_t_4*tube_nu_1 - tube_f_c1_t_5*tube_nu_3
+        tube_gamma_c1 = tube_rel_o_in_axes2_y - tube_m1_c1_t*tube_nu_1 - tube_m3_c1_t*tube_nu_3
         # (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
-        tube_gamma_c2 = tube_rel_o_z + tube_f_c2_t_2*tube_nu_3 - tube_f_c2_t*tube_nu_1
+        tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 - tube_m1_c2_t*tube_nu_1
         # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
-        tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3*tube_nu_1
+        tube_gamma_c3 = (
+        inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3_t*tube_nu_1
+        )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
+        # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[0][leg]] = tube_gamma_c1
+        # (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[1][leg]] = tube_gamma_c2
+        # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[2][leg]] = tube_gamma_c3
     return ok, (out_constraint_bias,)
 
@@ -6440,8 +6857,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, m_star,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, m_star,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -6508,88 +6926,102 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*m_star + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz + alpha_y) -
-        h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) - h_star_x*(f_p_t_2 +
+        f_p_t_3)
     )
     f_p_y = (
-    a_t_y*m_star + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz - alpha_x) -
-        h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) - h_star_y*(f_p_t +
+        f_p_t_3)
     )
     f_p_z = (
-    a_t_z*m_star + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz + alpha_x) -
-        h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) - h_star_z*(f_p_t +
+        f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -6602,193 +7034,209 @@ def _run_required(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
-        # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
-        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
-        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
         ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
-        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
-        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
-        ups_S_ddot_tip_z = (
-        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
-            axis_z_ups_axes2_in_base_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z
+        )
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
-        ups_qdd_1_t = (
-        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_x = (
-        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z -
-            ups_g_r3_x
-        )
-        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
-        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_t = ups_qdd_1*ups_s_2
-        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
+        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
-        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
-        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
+        ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
-        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
-        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_B_2_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        )
+        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
+        ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2
+        ups_acc_3_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
+        )
+        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
-        ups_phi_3_x = (
-        -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3)
+        ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_in_axes2_x = (
+        ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_t -
+            ups_phi_3_t_2) - ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
         )
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_x = (
-        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
-            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
-            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
-            ups_acc_3_z*ups_h_3_z
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_in_axes2_x = (
+        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
+            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_y = (
-        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
-            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
-            ups_g_r3_x*ups_h_2_y
+        ups_mu_2_in_axes2_y = (
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
-            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
-            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
-            ups_g_r3_y*ups_h_2_x
+        ups_mu_2_in_axes2_z = (
+        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
+            ups_phi_3_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_in_axes2_y = (
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
+            ups_phi_3_t_2)
+        )
+        ups_c_in_axes2_z = (
+        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        )
+        ups_c_x = (
+        axis_y_ups_axes2_x*ups_c_in_axes2_y + axis_z_ups_axes2_x*ups_c_in_axes2_z -
+            axis_x_ups_axes2_x*ups_phi_3_in_axes2_x
+        )
         ups_c_y = (
-        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        axis_y_ups_axes2_y*ups_c_in_axes2_y + axis_z_ups_axes2_y*ups_c_in_axes2_z -
+            axis_x_ups_axes2_y*ups_phi_3_in_axes2_x
         )
         ups_c_z = (
-        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
-        )
-        ups_c_in_base_x = (
-        axis_y_ups_axes2_x*ups_c_y + axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x
-        )
-        ups_c_in_base_y = (
-        axis_y_ups_axes2_y*ups_c_y + axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x
-        )
-        ups_c_in_base_z = (
-        axis_y_ups_axes2_z*ups_c_y + axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x
+        axis_y_ups_axes2_z*ups_c_in_axes2_y + axis_z_ups_axes2_z*ups_c_in_axes2_z -
+            axis_x_ups_axes2_z*ups_phi_3_in_axes2_x
         )
         # (R_a) moment that actuators and external wrench must give
-        ups_R_a_t = ups_c_in_base_z*ups_q_in_base_y - ups_c_in_base_y*ups_q_in_base_z
-        ups_R_a_t_2 = ups_c_in_base_x*ups_q_in_base_z - ups_c_in_base_z*ups_q_in_base_x
-        ups_R_a_t_3 = ups_c_in_base_y*ups_q_in_base_x - ups_c_in_base_x*ups_q_in_base_y
+        ups_R_a_t = ups_c_y*ups_q_z - ups_c_z*ups_q_y
+        ups_R_a_t_2 = ups_c_z*ups_q_x - ups_c_x*ups_q_z
+        ups_R_a_t_3 = ups_c_x*ups_q_y - ups_c_y*ups_q_x
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z
+        ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
+        ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
             _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
         sums = m.added(sums, leg, (
-        ups_c_in_base_x, ups_c_in_base_y, ups_c_in_base_z, ups_R_a_t, ups_R_a_t_2,
-            ups_R_a_t_3,
+        ups_c_x, ups_c_y, ups_c_z, ups_R_a_t, ups_R_a_t_2, ups_R_a_t_3,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
-    total_ups_x, total_ups_y, total_ups_z, total_ups_x_2, total_ups_y_2, total_ups_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_ups_x, R_a_ups_y, R_a_ups_z = sums
     sums = [0.0] * 6
     for leg, k in legs[1]:
         (
-        tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx, tube_Sigma_2_yy,
-            tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
-            tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
-            tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
-            tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y,
-            tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-            tube_link3_mass, tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+        tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
+            tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
+            tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
+            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
+            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
+            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
+            tube_h_2_in_spec2_x, tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+            tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
+            tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
             tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
             tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
             tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
@@ -6796,18 +7244,18 @@ def _run_required(m, X, V, A):
             tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -6820,53 +7268,68 @@ def _run_required(m, X, V, A):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_S_dot_t = tube_s_1*tube_s_2
+        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_xy
         )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_yy
         )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_zy
         )
         axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
         )
         axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
         )
         axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -6894,107 +7357,141 @@ def _run_required(m, X, V, A):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_z = (
+        tube_n_m1_t_12 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
-        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
-        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
+        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_x = (
+        tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_y = (
+        tube_n_m2_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_z = (
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
-        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_z = (
+        tube_n_m3_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
-        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
-        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
+        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
+        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
-        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
+        tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
+        tube_mu_c1_in_axes2_z = (
+        -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
+        )
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
+        tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
+        tube_mu_c2_in_axes2_z = (
+        tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_in_axes2_x = (
+        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        )
+        tube_mu_c3_in_axes2_y = (
+        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        )
+        tube_mu_c3_in_axes2_z = (
+        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c3_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z
+        )
+        tube_mu_c3_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z
+        )
+        tube_mu_c3_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
+        )
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
-        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
-        tube_w_1_t_8 = 1.35*tube_f_c2_t
-        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
         tube_w_1_t_12 = 1.35*tube_mu3_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -7015,10 +7512,10 @@ def _run_required(m, X, V, A):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -7041,23 +7538,23 @@ def _run_required(m, X, V, A):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -7065,12 +7562,12 @@ def _run_required(m, X, V, A):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -7085,429 +7582,424 @@ def _run_required(m, X, V, A):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
-        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
-        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
-        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
-        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
-        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
         # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_tip_x = (
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
         axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        tube_omega_tip_y = (
-        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
-            axis_y_tube_axes2_in_base_z*omega_z
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_omega_tip_z = (
-        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
-            axis_z_tube_axes2_in_base_z*omega_z
-        )
-        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
         # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_tip_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_S_dot_tip_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_1) rate of joint 1
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_qd_1_t_6 = 1.35*tube_eta_1
+        tube_qd_1_t_7 = 1.35*tube_eta_2
+        tube_qd_1_t_8 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
+            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_4*tube_qd_1_t_7 +
+            tube_qd_1_t_5*tube_qd_1_t_8)
         )
-        tube_S_dot_tip_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
+            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67)
         )
-        # (tube-qd_3) rate of joint 3
-        tube_qd_3_t = 1.35*tube_eta_1
-        tube_qd_3_t_2 = 1.35*tube_eta_2
-        tube_qd_3_t_3 = 1.35*tube_eta_3
-        tube_qd_3_t_4 = (
-        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
-            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
-        tube_qd_3_t_5 = (
-        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
-            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
-            - tube_qd_3_t_4*tube_w_1_t_69)
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t_6*tube_w_1_t_15 +
+            tube_qd_1_t_8*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
         )
-        tube_qd_3_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
-            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
-            + tube_qd_3_t_5*tube_w_1_t_53)
-        )
-        tube_qd_3_t_7 = (
-        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
-            tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
-        )
-        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
-        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
-        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
-        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
-        tube_W_2_t = tube_omega_1_t*tube_omega_1_t
-        tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2
-        tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8
-        tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2
+        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
+        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        # (tube-a_p) acceleration of the connection point without its centripetal part
+        tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y
+        tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z
+        tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x
+        # (tube-S_ddot) acceleration of the connection point
+        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
+        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
+        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_root_2*tube_zeta_2_y
-        tube_bias_t_2 = tube_W_2_xy*tube_root_2
-        tube_bias_t_3 = 2.0*tube_S_dot_tip_x
-        tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8
-        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2
-        tube_bias_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_z = 2.0*tube_bias_t + tube_bias_t_5
-        # (tube-nd_m1) rate of moment direction 1
-        tube_nd_m1_y = (
-        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
-            tube_end_p1_r3_y*tube_omega_tip_x
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2
+        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
+        tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_in_axes2_z = 2.0*tube_bias_t + tube_bias_t_5
+        # (tube-rel) acceleration of the connection point left to the joint accelerations
+        tube_rel_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
+            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
         )
-        tube_nd_m1_z = (
-        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
-            tube_end_p1_r3_x*tube_qd_3_t_8
+        tube_rel_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
+            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
+        )
+        # (tube-nd_m1) rate of moment direction 1
+        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_nd_m1_in_axes2_y = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
+        )
+        tube_nd_m1_in_axes2_z = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
-        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
-        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_nd_m2_x = (
-        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
-            tube_end_p2_r3_x*tube_omega_tip_z
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_nd_m2_in_axes2_x = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
-        tube_nd_m2_y = (
-        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_z
+        tube_nd_m2_in_axes2_y = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
-        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t = (
+        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        )
         tube_nu_2_t_2 = (
-        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
-            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
         tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
-        tube_nd_m3_x = (
-        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
-            tube_end_p3_r3_y*tube_omega_tip_x
+        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_nd_m3_in_axes2_x = (
+        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_nd_m3_z = (
-        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
-            tube_end_p3_r3_y*tube_omega_tip_z
+        tube_nd_m3_in_axes2_z = (
+        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
-            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
         )
-        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
-        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x
-        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
-        tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y
-        tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2
-        # (tube-mu_c1) the moment that goes with it
-        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
-        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
-        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
-        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
-        tube_Hk_a_1_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_z
-        )
-        tube_Hk_a_1_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_x
-        )
-        tube_Hk_a_1_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_y
-        )
-        # (tube-mu_c2) the moment that goes with it
-        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
-        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
-        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
-        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
-        tube_Hk_a_2_x = (
-        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_z
-        )
-        tube_Hk_a_2_y = (
-        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_x
-        )
-        tube_Hk_a_2_z = (
-        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_y
-        )
-        # (tube-mu_c3) the moment that goes with it
-        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
-        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
-        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
-        tube_mu_c3_in_base_x = (
-        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_y = (
-        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_z = (
-        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
-        )
-        # (tube-a_p) acceleration of the connection point without its centripetal part
-        tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y
-        tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z
-        tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x
-        # (tube-S_ddot) acceleration of the connection point
-        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
-        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
-        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
-        # (tube-rel) acceleration of the connection point left to the joint accelerations
-        tube_rel_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_ddot_x + axis_y_tube_axes2_in_base_y*tube_S_ddot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_y
-        )
-        tube_rel_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_ddot_x + axis_z_tube_axes2_in_base_y*tube_S_ddot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_z
-        )
+        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
         # (tube-etad_1) acceleration with which the joints turn along moment direction 1
-        tube_alpha_tip_x = (
-        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        tube_alpha_in_axes2_y = (
+        alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
         )
-        tube_alpha_tip_y = (
-        alpha_x*axis_y_tube_axes2_in_base_x + alpha_y*axis_y_tube_axes2_in_base_y +
-            alpha_z*axis_y_tube_axes2_in_base_z
+        tube_alpha_in_axes2_z = (
+        alpha_x*axis_z_tube_axes2_x + alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z
         )
-        tube_alpha_tip_z = (
-        alpha_x*axis_z_tube_axes2_in_base_x + alpha_y*axis_z_tube_axes2_in_base_y +
-            alpha_z*axis_z_tube_axes2_in_base_z
+        tube_etad_1_t = (
+        tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z
         )
-        tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x - tube_alpha_tip_z*tube_end_p1_r3_y
         tube_etad_1 = tube_nu_1 - tube_etad_1_t
         # (tube-etad_2) acceleration with which the joints turn along moment direction 2
-        tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y - tube_alpha_tip_y*tube_end_p2_r3_x
+        tube_alpha_in_axes2_x = (
+        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        )
+        tube_etad_2_t = (
+        tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y - tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y
+        )
         tube_etad_2 = tube_nu_2 - tube_etad_2_t
         # (tube-etad_3) acceleration with which the joints turn along moment direction 3
-        tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x - tube_alpha_tip_z*tube_end_p3_r3_x
+        tube_etad_3_t = (
+        tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z
+        )
         tube_etad_3 = tube_nu_3 - tube_etad_3_t
         # (tube-qdd_1) acceleration of joint 1
         tube_qdd_1_t = 1.35*tube_etad_1
         tube_qdd_1_t_2 = 1.35*tube_etad_2
         tube_qdd_1_t_3 = 1.35*tube_etad_3
-        tube_qdd_1_t_4 = (
-        inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 + tube_qdd_1_t_2*tube_w_1_t_79 +
-            tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76 + tube_rel_z*tube_w_1_t_77)
+        tube_qdd_1 = (
+        inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
+            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_4*tube_qdd_1_t_2 +
+            tube_qd_1_t_5*tube_qdd_1_t_3)
         )
-        tube_qdd_1_t_5 = (
-        inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
-            tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 - tube_qdd_1_t_2*tube_w_1_t_67 -
-            tube_qdd_1_t_4*tube_w_1_t_69)
+        # (tube-qdd_2) acceleration of joint 2
+        tube_qdd_2_t = (
+        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
+            tube_rel_in_axes2_y*tube_w_1_t_64 + tube_rel_in_axes2_z*tube_w_1_t_65 -
+            tube_qdd_1*tube_w_1_t_69 - tube_qdd_1_t_2*tube_w_1_t_67)
         )
-        tube_qdd_1_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z + tube_qdd_1_t*tube_w_1_t_51 +
-            tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_1_t_4*tube_w_1_t_58 +
-            tube_qdd_1_t_5*tube_w_1_t_53 + tube_rel_y*tube_w_1_t_50)
+        tube_qdd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
+            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
+            + tube_rel_in_axes2_y*tube_w_1_t_50)
         )
-        tube_qdd_1_t_7 = (
-        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_1_t_6*tube_w_1_t_21 +
-            tube_rel_y*tube_w_1_t_14 + inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
-            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
-            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
-            tube_qdd_1_t_5*tube_w_1_t_25
+        tube_qdd_2_t_3 = (
+        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
+            tube_rel_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
+            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
+            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
         )
-        tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7
+        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         # (tube-alpha_1) angular acceleration of link 1
-        tube_alpha_1_t = tube_qdd_1_t_4*tube_s_2
-        tube_alpha_1_t_2 = tube_c_2*tube_qdd_1_t_4
+        tube_alpha_1_in_axes2_x = tube_qdd_1*tube_s_2
+        tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1
         # (tube-alpha_2) angular acceleration of link 2
-        tube_alpha_2_x = tube_alpha_1_t - tube_zeta_2_x
-        tube_alpha_2_y = -tube_alpha_1_t_2 - tube_zeta_2_y
+        tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x
+        tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz
         # (tube-B_2) acceleration tensor of link 2
-        tube_B_2_xy = -tube_W_2_xy - tube_qdd_1_t_8
-        tube_B_2_yx = tube_qdd_1_t_8 - tube_W_2_xy
-        tube_B_2_zx = tube_zeta_2_y - tube_alpha_2_y
-        tube_B_2_zy = tube_alpha_2_x - tube_zeta_2_x
+        tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2
+        tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2
+        tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y
+        tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x
         # (tube-acc_3) acceleration of the reference point of link 3, less gravity
-        tube_acc_3_x = (
+        tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_acc_3_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_t_3*tube_s_2 + tube_acc_3_t_4*tube_c_2
+        tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_t_4*tube_s_2
+        tube_acc_3_in_axes2_x = (
         axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
-            axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_r3_x
+            axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_in_axes2_x
         )
-        tube_acc_3_y = tube_bias_t_4 + tube_qdd_1_t_8*tube_root_2 - tube_bias_t_2 - tube_g_r3_y
-        tube_acc_3_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x - tube_alpha_2_y*tube_root_2
+        tube_acc_3_in_axes2_y = (
+        tube_bias_t_4 + tube_qdd_2*tube_root_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        )
+        tube_acc_3_in_axes2_z = (
+        tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_root_2
+        )
         # (tube-f_3) inertia force of link 3 less its weight
-        tube_f_3_x = (
-        tube_acc_3_x*tube_link3_mass - tube_B_2_xy*tube_h_3_z - tube_alpha_1_t_2*tube_h_3_y -
-            tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3)
+        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
+        tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_f_3_t_3 = tube_qd_2*tube_qd_2
+        tube_f_3_in_axes2_x = (
+        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y +
+            tube_h_3_in_spec2_x*(-tube_f_3_t_2 - tube_f_3_t_3) -
+            tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
         )
-        tube_f_3_y = (
-        tube_B_2_yx*tube_h_3_x + tube_acc_3_y*tube_link3_mass + tube_h_3_z*(tube_W_2_t +
-            tube_W_2_t_3) - tube_alpha_1_t*tube_h_3_y
+        tube_f_3_in_axes2_y = (
+        tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_y*tube_link3_mass +
+            tube_h_3_in_spec2_z*(tube_f_3_t + tube_f_3_t_3) -
+            tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y
         )
-        tube_f_3_z = (
-        tube_B_2_zx*tube_h_3_x + tube_acc_3_z*tube_link3_mass - tube_B_2_zy*tube_h_3_z -
-            tube_h_3_y*(tube_W_2_t + tube_W_2_t_2)
+        tube_f_3_in_axes2_z = (
+        tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_z*tube_link3_mass -
+            tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_t +
+            tube_f_3_t_2)
         )
         # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        tube_mu_2_x = (
-        tube_B_2_yx*tube_J_group_2_xz + tube_B_2_zy*tube_Sigma_2_yy +
-            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_t +
-            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_zx*tube_J_group_2_xy -
-            tube_acc_3_y*tube_h_3_y - tube_acc_3_z*tube_h_3_z
+        tube_mu_2_in_axes2_x = (
+        tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
+            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
         )
-        tube_mu_2_y = (
-        tube_B_2_zy*tube_J_group_2_xy + tube_acc_3_x*tube_h_3_y + tube_g_r1_x*tube_h_2_x -
-            tube_B_2_xy*tube_J_group_2_yz - tube_B_2_zx*tube_Sigma_2_xx -
-            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_t_2 -
-            tube_acc_3_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y
+        tube_mu_2_in_axes2_y = (
+        tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
+            - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_y
         )
-        tube_mu_2_z = (
-        tube_B_2_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t - tube_W_2_t_2) +
-            tube_J_group_2_xz*tube_alpha_1_t + tube_acc_3_x*tube_h_3_z + tube_acc_3_y*tube_h_3_x -
-            tube_B_2_xy*tube_Sigma_2_yy - tube_J_group_2_yz*tube_alpha_1_t_2 -
-            tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x
+        tube_mu_2_in_axes2_z = (
+        tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx + tube_J_group_2_in_axes2_xy*(tube_f_3_t -
+            tube_f_3_t_2) + tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
+            - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_y = tube_mu_2_y - tube_f_3_z*tube_root_2
-        tube_N_2_z = tube_mu_2_z + tube_f_3_y*tube_root_2
+        tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2
+        tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2
         # (tube-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_G_t = inv_tube_w_1_t_16*tube_N_2_z
-        tube_G_t_2 = inv_tube_w_1_t_57*tube_G_t*tube_w_1_t_17
-        tube_G_t_3 = inv_tube_w_1_t_95*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
+        tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
+        tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
+        tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
         tube_G_t_4 = (
-        inv_tube_w_1_t_129*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
+        inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
             tube_G_t*tube_w_1_t_25)
         )
         tube_G_t_5 = (
-        inv_tube_w_1_t_157*(tube_G_t_2*tube_w_1_t_45 + tube_G_t_3*tube_w_1_t_58 +
-            tube_mu_2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 - tube_G_t_4*tube_w_1_t_69 -
-            tube_N_2_y*tube_c_2)
+        inv_tube_w_1_t_75*(tube_G_t_2*tube_w_1_t_45 + tube_G_t_3*tube_w_1_t_58 +
+            tube_N_2_in_axes2_y*tube_c_2 + tube_mu_2_in_axes2_x*tube_s_2 - tube_G_t*tube_w_1_t_29
+            - tube_G_t_4*tube_w_1_t_69)
         )
-        tube_G_t_6 = (
+        tube_G_in_axes2_y = (
         tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
-            tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_w_1_t_76
+            tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_qd_1_t
         )
-        tube_G_t_7 = (
-        inv_tube_w_1_t_95*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_w_1_t_77
+        tube_G_in_axes2_z = (
+        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_qd_1_t_2
         )
-        tube_G_t_8 = (
+        # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_G_m1_t = (
         tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
-            tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_w_1_t_78
+            tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3
         )
-        tube_G_t_9 = 1.35*tube_G_t_8
-        tube_G_t_10 = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_w_1_t_79
-        tube_G_t_11 = 1.35*tube_G_t_10
-        tube_G_t_12 = (
+        tube_G_m1 = 1.35*tube_G_m1_t
+        # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4
+        tube_G_m2 = -1.35*tube_G_m2_t
+        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_G_m3_t = (
         tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
-            tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_w_1_t_80
+            tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5
         )
-        tube_G_t_13 = 1.35*tube_G_t_12
-        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
-        tube_c_in_base_x = (
-        -axis_x_tube_axes2_x*tube_f_3_x - axis_y_tube_axes2_in_base_x*tube_G_t_6 -
-            axis_z_tube_axes2_in_base_x*tube_G_t_7
-        )
-        tube_c_in_base_y = (
-        -axis_x_tube_axes2_y*tube_f_3_x - axis_y_tube_axes2_in_base_y*tube_G_t_6 -
-            axis_z_tube_axes2_in_base_y*tube_G_t_7
-        )
-        tube_c_in_base_z = (
-        -axis_x_tube_axes2_z*tube_f_3_x - axis_y_tube_axes2_in_base_z*tube_G_t_6 -
-            axis_z_tube_axes2_in_base_z*tube_G_t_7
-        )
+        tube_G_m3 = 1.35*tube_G_m3_t
         # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_G_m_x = tube_G_t_11*tube_end_p2_r3_y - tube_G_t_13*tube_end_p3_r1_x
-        tube_G_m_y = -tube_G_t_11*tube_end_p2_r3_x - tube_G_t_9*tube_end_p1_r1_x
-        tube_G_m_z = tube_G_t_13*tube_end_p3_r3_x + tube_G_t_9*tube_end_p1_r3_y
+        tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y - tube_G_m3*tube_end_p3_in_axes2_z
+        tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y - tube_G_m1*tube_end_p1_in_axes2_z
+        tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z + tube_G_m3*tube_n_m3_in_axes2_z
+        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
+        tube_c_x = (
+        -axis_x_tube_axes2_x*tube_f_3_in_axes2_x - axis_y_tube_axes2_x*tube_G_in_axes2_y -
+            axis_z_tube_axes2_x*tube_G_in_axes2_z
+        )
+        tube_c_y = (
+        -axis_x_tube_axes2_y*tube_f_3_in_axes2_x - axis_y_tube_axes2_y*tube_G_in_axes2_y -
+            axis_z_tube_axes2_y*tube_G_in_axes2_z
+        )
+        tube_c_z = (
+        -axis_x_tube_axes2_z*tube_f_3_in_axes2_x - axis_y_tube_axes2_z*tube_G_in_axes2_y -
+            axis_z_tube_axes2_z*tube_G_in_axes2_z
+        )
         # (R_a) moment that actuators and external wrench must give
         tube_R_a_t = (
-        tube_c_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_G_m_x -
-            axis_y_tube_axes2_in_base_x*tube_G_m_y - axis_z_tube_axes2_in_base_x*tube_G_m_z -
-            tube_c_in_base_y*tube_q_in_base_z
+        axis_x_tube_axes2_x*tube_G_m_in_axes2_x + axis_y_tube_axes2_x*tube_G_m_in_axes2_y +
+            axis_z_tube_axes2_x*tube_G_m_in_axes2_z + tube_c_y*tube_q_z - tube_c_z*tube_q_y
         )
         tube_R_a_t_2 = (
-        tube_c_in_base_x*tube_q_in_base_z - axis_x_tube_axes2_y*tube_G_m_x -
-            axis_y_tube_axes2_in_base_y*tube_G_m_y - axis_z_tube_axes2_in_base_y*tube_G_m_z -
-            tube_c_in_base_z*tube_q_in_base_x
+        axis_x_tube_axes2_y*tube_G_m_in_axes2_x + axis_y_tube_axes2_y*tube_G_m_in_axes2_y +
+            axis_z_tube_axes2_y*tube_G_m_in_axes2_z + tube_c_z*tube_q_x - tube_c_x*tube_q_z
         )
         tube_R_a_t_3 = (
-        tube_c_in_base_y*tube_q_in_base_x - axis_x_tube_axes2_z*tube_G_m_x -
-            axis_y_tube_axes2_in_base_z*tube_G_m_y - axis_z_tube_axes2_in_base_z*tube_G_m_z -
-            tube_c_in_base_x*tube_q_in_base_y
+        axis_x_tube_axes2_z*tube_G_m_in_axes2_x + axis_y_tube_axes2_z*tube_G_m_in_axes2_y +
+            axis_z_tube_axes2_z*tube_G_m_in_axes2_z + tube_c_x*tube_q_y - tube_c_y*tube_q_x
+        )
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
+        tube_Hk_a_1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
+            axis_y_tube_axes2_z*tube_q_y + axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z -
+            axis_y_tube_axes2_y*tube_q_z
+        )
+        tube_Hk_a_1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_q_z +
+            axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
+            - axis_y_tube_axes2_z*tube_q_x
+        )
+        tube_Hk_a_1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_q_x +
+            axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
+            - axis_y_tube_axes2_x*tube_q_y
+        )
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
+        tube_Hk_a_2_x = (
+        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z +
+            axis_z_tube_axes2_z*tube_q_y - axis_x_tube_axes2_x*tube_mu_c2_t -
+            axis_z_tube_axes2_y*tube_q_z
+        )
+        tube_Hk_a_2_y = (
+        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_q_z +
+            axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_y*tube_mu_c2_t -
+            axis_z_tube_axes2_z*tube_q_x
+        )
+        tube_Hk_a_2_z = (
+        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_q_x +
+            axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_z*tube_mu_c2_t -
+            axis_z_tube_axes2_x*tube_q_y
         )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
-        tube_c_in_base_x, tube_c_in_base_y, tube_c_in_base_z, tube_R_a_t, tube_R_a_t_2,
-            tube_R_a_t_3,
+        tube_c_x, tube_c_y, tube_c_z, tube_R_a_t, tube_R_a_t_2, tube_R_a_t_3,
         ))
-        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_in_base_x
-        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_in_base_y
-        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        # (tube-n_c1) unit force that the leg's freedoms leave out
+        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_x
+        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_y
+        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_z
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
-        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_in_base_x
-        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_in_base_y
-        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        # (tube-n_c2) unit force that the leg's freedoms leave out
+        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_x
+        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_y
+        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_z
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
         out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
         out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
-        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_in_base_x
-        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_in_base_y
-        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_in_base_z
-    (
-    total_tube_x, total_tube_y, total_tube_z, total_tube_x_2, total_tube_y_2, total_tube_z_2,
-    ) = sums
+        # (tube-Hk_a_3) moment of the column's unit force about the platform origin
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
+    R_t_t_4, R_t_t_5, R_t_t_6, R_a_tube_x, R_a_tube_y, R_a_tube_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_tube_x - total_ups_x
-    R_t_y = f_p_y - total_tube_y - total_ups_y
-    R_t_z = f_p_z - total_tube_z - total_ups_z
+    R_t_x = f_p_x - R_t_t - R_t_t_4
+    R_t_y = f_p_y - R_t_t_2 - R_t_t_5
+    R_t_z = f_p_z - R_t_t_3 - R_t_t_6
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_tube_x_2 - total_ups_x_2
-    R_a_y = mu_p_in_base_y - total_tube_y_2 - total_ups_y_2
-    R_a_z = mu_p_in_base_z - total_tube_z_2 - total_ups_z_2
+    R_a_x = R_a_tube_x + R_a_ups_x + mu_p_x
+    R_a_y = R_a_tube_y + R_a_ups_y + mu_p_y
+    R_a_z = R_a_tube_z + R_a_ups_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -7588,28 +8080,29 @@ def _run_inverse_kinematics(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-q_1) displacement of joint 1
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        # (ups-q_1) displacement of joint 1
-        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
         # (ups-q_2) displacement of joint 2
-        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1)
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_in_axes1_z, inv_ups_root_2*ups_root_1)
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849))
         )
+        # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
+        # (ups-q_2) displacement of joint 2
         out_q[_q_ups[1][leg]] = ups_q_2
+        # (ups-q_3) displacement of joint 3
         out_q[_q_ups[2][leg]] = ups_root_2
     for leg, k in legs[1]:
         (
@@ -7644,28 +8137,29 @@ def _run_inverse_kinematics(m, X):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-q_1) displacement of joint 1
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_q_1 = atan2(inv_tube_root_1*tube_py_1, inv_tube_root_1*tube_px_1)
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
-        # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        # (tube-q_1) displacement of joint 1
-        tube_q_1 = atan2(inv_tube_root_1*tube_py_1, inv_tube_root_1*tube_px_1)
         # (tube-q_2) displacement of joint 2
-        tube_q_2 = atan2(-inv_tube_root_2*tube_xi_1_t, inv_tube_root_2*tube_root_1)
+        inv_tube_root_2 = 1.0/tube_root_2
+        tube_q_2 = atan2(-inv_tube_root_2*tube_xi_1_in_axes1_z, inv_tube_root_2*tube_root_1)
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
         )
+        # (tube-q_1) displacement of joint 1
         out_q[_q_tube[0][leg]] = tube_q_1
+        # (tube-q_2) displacement of joint 2
         out_q[_q_tube[1][leg]] = tube_q_2
+        # (tube-q_3) displacement of joint 3
         out_q[_q_tube[2][leg]] = tube_root_2
     return ok, (out_q,)
 
@@ -7732,18 +8226,18 @@ def _run_joint_rates(m, X, V):
             ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -7756,57 +8250,59 @@ def _run_joint_rates(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_x = t_dot_x + omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_y = t_dot_y + omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_z = t_dot_z + omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        inv_ups_root_2 = 1.0/ups_root_2
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
-        inv_ups_root_2*(ups_S_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
-            ups_S_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
-            ups_S_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x))
-        )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
+        inv_ups_root_2*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
+            ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
+            ups_S_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y))
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
             _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
+        # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
+        # (ups-qd_2) rate of joint 2
         out_qd[_qd_ups[1][leg]] = ups_qd_2
-        out_qd[_qd_ups[2][leg]] = ups_S_dot_tip_x
+        # (ups-qd_3) rate of joint 3
+        out_qd[_qd_ups[2][leg]] = ups_S_dot_in_axes2_x
     for leg, k in legs[1]:
         (
         tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
@@ -7820,18 +8316,18 @@ def _run_joint_rates(m, X, V):
             tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -7844,53 +8340,65 @@ def _run_joint_rates(m, X, V):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_S_dot_t = tube_s_1*tube_s_2
+        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_xy
         )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_yy
         )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_zy
         )
         axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
         )
         axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
         )
         axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_x = t_dot_x + omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_y = t_dot_y + omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_z = t_dot_z + omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -7918,91 +8426,91 @@ def _run_joint_rates(m, X, V):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r3_y = (
-        -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_in_axes2_z = (
+        tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
-            - tube_end_p1_r0_x*tube_s_1)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
+            tube_c_1*tube_n_m1_t_11)
         )
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_z = (
+        tube_n_m2_t = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_y = (
-        -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
-            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_n_m2_t_2 = (
+        tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz)
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
+            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz)
         )
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r3_x = (
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_in_axes2_z = (
         tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
-            - tube_end_p3_r0_x*tube_s_1)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
+            tube_c_1*tube_n_m3_t_2)
         )
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
+        )
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
-        # (tube-mu1_c3) moment along direction 1 that goes with it
-        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        # (tube-mu2_c3) moment along direction 2 that goes with it
+        tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        tube_w_1_t_10 = 1.35*inv_tube_size_c3*tube_f_c3_t
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*inv_tube_size_c3*tube_f_c3_t_2
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_3
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        tube_w_1_t_10 = 1.35*tube_m1_c3_t*tube_mu2_c3
+        tube_w_1_t_11 = 1.35*tube_mu2_c3
+        tube_w_1_t_12 = 1.35*tube_m3_c3*tube_mu2_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -8023,10 +8531,10 @@ def _run_joint_rates(m, X, V):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -8049,23 +8557,23 @@ def _run_joint_rates(m, X, V):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -8073,12 +8581,12 @@ def _run_joint_rates(m, X, V):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -8093,82 +8601,73 @@ def _run_joint_rates(m, X, V):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_x = t_dot_x + omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
-        tube_S_dot_y = t_dot_y + omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
-        tube_S_dot_z = t_dot_z + omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
         # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_tip_x = (
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
         axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        tube_omega_tip_y = (
-        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
-            axis_y_tube_axes2_in_base_z*omega_z
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_omega_tip_z = (
-        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
-            axis_z_tube_axes2_in_base_z*omega_z
-        )
-        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
         # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_tip_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_S_dot_tip_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_1) rate of joint 1
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_qd_1_t = 1.35*tube_eta_1
+        tube_qd_1_t_2 = 1.35*tube_eta_2
+        tube_qd_1_t_3 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
+            inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
+            inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
+            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73 +
+            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74)
         )
-        tube_S_dot_tip_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
+            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67)
         )
-        # (tube-qd_3) rate of joint 3
-        tube_qd_3_t = 1.35*tube_eta_1
-        tube_qd_3_t_2 = 1.35*tube_eta_2
-        tube_qd_3_t_3 = 1.35*tube_eta_3
-        tube_qd_3_t_4 = (
-        inv_tube_w_1_t_157*(inv_tube_w_1_t_157*tube_S_dot_tip_y*tube_w_1_t_70 +
-            inv_tube_w_1_t_157*tube_S_dot_tip_z*tube_w_1_t_71 +
-            inv_tube_w_1_t_157*tube_qd_3_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_157*tube_qd_3_t_2*tube_w_1_t_73 +
-            inv_tube_w_1_t_157*tube_qd_3_t_3*tube_w_1_t_74)
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
-        tube_qd_3_t_5 = (
-        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
-            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
-            - tube_qd_3_t_4*tube_w_1_t_69)
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15 +
+            tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
         )
-        tube_qd_3_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
-            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
-            + tube_qd_3_t_5*tube_w_1_t_53)
-        )
-        tube_qd_3_t_7 = (
-        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
-            tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
-        )
-        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
-        out_qd[_qd_tube[0][leg]] = tube_qd_3_t_4
-        out_qd[_qd_tube[1][leg]] = tube_qd_3_t_8
-        out_qd[_qd_tube[2][leg]] = tube_S_dot_tip_x
+        # (tube-qd_1) rate of joint 1
+        out_qd[_qd_tube[0][leg]] = tube_qd_1
+        # (tube-qd_2) rate of joint 2
+        out_qd[_qd_tube[1][leg]] = tube_qd_2
+        # (tube-qd_3) rate of joint 3
+        out_qd[_qd_tube[2][leg]] = tube_S_dot_in_axes2_x
     return ok, (out_qd,)
 
 
@@ -8247,18 +8746,18 @@ def _run_joint_accelerations(m, X, V, A):
             ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -8271,94 +8770,101 @@ def _run_joint_accelerations(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        inv_ups_root_2 = 1.0/ups_root_2
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t
-        ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_omega_1_t*ups_qd_2*ups_root_2
+        ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z
+        ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1
         # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
         ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_x = (
-        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z +
-            ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 + ups_qd_2*ups_qd_2)
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
-        ups_rel_z = (
-        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
-            axis_z_ups_axes2_in_base_z*ups_S_ddot_z - ups_bias_z
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z -
+            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
+        )
+        ups_rel_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z - ups_bias_in_axes2_z
         )
         # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
         ups_qdd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
-            axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) + ups_omega_1_t*ups_omega_1_t_2
+            axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) -
+            ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
             _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
+        # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
+        # (ups-qdd_2) acceleration of joint 2
         out_qdd[_qdd_ups[1][leg]] = ups_qdd_2
-        out_qdd[_qdd_ups[2][leg]] = ups_rel_x
+        # (ups-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_ups[2][leg]] = ups_rel_in_axes2_x
     for leg, k in legs[1]:
         (
         tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
@@ -8372,18 +8878,18 @@ def _run_joint_accelerations(m, X, V, A):
             tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -8396,53 +8902,68 @@ def _run_joint_accelerations(m, X, V, A):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_S_dot_t = tube_s_1*tube_s_2
+        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_xy
         )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_yy
         )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_zy
         )
         axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
         )
         axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
         )
         axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -8470,99 +8991,96 @@ def _run_joint_accelerations(m, X, V, A):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_z = (
+        tube_n_m1_t_12 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
-        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
-        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
+        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_x = (
+        tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_y = (
+        tube_n_m2_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_z = (
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
-        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_z = (
+        tube_n_m3_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
-        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
-        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
+        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
+        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
-        # (tube-mu1_c3) moment along direction 1 that goes with it
-        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        # (tube-mu2_c3) moment along direction 2 that goes with it
+        tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        tube_w_1_t_10 = 1.35*inv_tube_size_c3*tube_f_c3_t
-        tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*inv_tube_size_c3*tube_f_c3_t_2
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        tube_w_1_t_10 = 1.35*tube_m1_c3_t*tube_mu2_c3
+        tube_w_1_t_11 = 1.35*tube_mu2_c3
+        tube_w_1_t_12 = 1.35*tube_m3_c3*tube_mu2_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -8583,10 +9101,10 @@ def _run_joint_accelerations(m, X, V, A):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -8609,23 +9127,23 @@ def _run_joint_accelerations(m, X, V, A):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -8633,12 +9151,12 @@ def _run_joint_accelerations(m, X, V, A):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -8653,215 +9171,225 @@ def _run_joint_accelerations(m, X, V, A):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
-        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
-        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
-        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
-        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
-        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
         # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_tip_x = (
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
         axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        tube_omega_tip_y = (
-        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
-            axis_y_tube_axes2_in_base_z*omega_z
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_omega_tip_z = (
-        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
-            axis_z_tube_axes2_in_base_z*omega_z
-        )
-        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
         # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_tip_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_S_dot_tip_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_1) rate of joint 1
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_qd_1_t_6 = 1.35*tube_eta_1
+        tube_qd_1_t_7 = 1.35*tube_eta_2
+        tube_qd_1_t_8 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
+            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_4*tube_qd_1_t_7 +
+            tube_qd_1_t_5*tube_qd_1_t_8)
         )
-        tube_S_dot_tip_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
+            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67)
         )
-        # (tube-qd_3) rate of joint 3
-        tube_qd_3_t = 1.35*tube_eta_1
-        tube_qd_3_t_2 = 1.35*tube_eta_2
-        tube_qd_3_t_3 = 1.35*tube_eta_3
-        tube_qd_3_t_4 = (
-        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
-            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
-        tube_qd_3_t_5 = (
-        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
-            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
-            - tube_qd_3_t_4*tube_w_1_t_69)
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t_6*tube_w_1_t_15 +
+            tube_qd_1_t_8*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
         )
-        tube_qd_3_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
-            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
-            + tube_qd_3_t_5*tube_w_1_t_53)
-        )
-        tube_qd_3_t_7 = (
-        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
-            tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
-        )
-        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
-        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
-        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
-        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
+        # (tube-W_2) centripetal tensor of link 2
+        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
+        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        # (tube-a_p) acceleration of the connection point without its centripetal part
+        tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y
+        tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z
+        tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x
+        # (tube-S_ddot) acceleration of the connection point
+        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
+        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
+        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = 2.0*tube_S_dot_tip_x
-        tube_bias_y = tube_bias_t*tube_qd_3_t_8 - tube_omega_1_t*tube_omega_1_t_2*tube_root_2
-        tube_bias_z = tube_bias_t*tube_omega_1_t_2 + 2.0*tube_root_2*tube_zeta_2_y
-        # (tube-nd_m1) rate of moment direction 1
-        tube_nd_m1_y = (
-        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
-            tube_end_p1_r3_y*tube_omega_tip_x
+        tube_bias_t = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_in_axes2_y = (
+        tube_bias_t*tube_qd_2 + tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_root_2
         )
-        tube_nd_m1_z = (
-        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
-            tube_end_p1_r3_x*tube_qd_3_t_8
+        tube_bias_in_axes2_z = (
+        2.0*tube_W_2_in_axes2_xz*tube_root_2 - tube_bias_t*tube_omega_1_in_axes2_y
+        )
+        # (tube-rel) acceleration of the connection point left to the joint accelerations
+        tube_rel_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
+            axis_x_tube_axes2_z*tube_S_ddot_z -
+            tube_root_2*(-tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y - tube_qd_2*tube_qd_2)
+        )
+        tube_rel_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
+            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
+        )
+        tube_rel_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
+            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
+        )
+        # (tube-nd_m1) rate of moment direction 1
+        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_nd_m1_in_axes2_y = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
+        )
+        tube_nd_m1_in_axes2_z = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
-        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
-        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_nd_m2_x = (
-        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
-            tube_end_p2_r3_x*tube_omega_tip_z
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_nd_m2_in_axes2_x = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
-        tube_nd_m2_y = (
-        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_z
+        tube_nd_m2_in_axes2_y = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
-        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t = (
+        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        )
         tube_nu_2_t_2 = (
-        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
-            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
         tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
-        tube_nd_m3_x = (
-        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
-            tube_end_p3_r3_y*tube_omega_tip_x
+        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_nd_m3_in_axes2_x = (
+        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_nd_m3_z = (
-        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
-            tube_end_p3_r3_y*tube_omega_tip_z
+        tube_nd_m3_in_axes2_z = (
+        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
-            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
         )
-        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
-        # (tube-a_p) acceleration of the connection point without its centripetal part
-        tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y
-        tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z
-        tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x
-        # (tube-S_ddot) acceleration of the connection point
-        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
-        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
-        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
-        # (tube-rel) acceleration of the connection point left to the joint accelerations
-        tube_rel_x = (
-        axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
-            axis_x_tube_axes2_z*tube_S_ddot_z + tube_root_2*(tube_omega_1_t_2*tube_omega_1_t_2 +
-            tube_qd_3_t_8*tube_qd_3_t_8)
-        )
-        tube_rel_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_ddot_x + axis_y_tube_axes2_in_base_y*tube_S_ddot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_y
-        )
-        tube_rel_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_ddot_x + axis_z_tube_axes2_in_base_y*tube_S_ddot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_z
-        )
+        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
         # (tube-etad_1) acceleration with which the joints turn along moment direction 1
-        tube_alpha_tip_x = (
-        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        tube_alpha_in_axes2_y = (
+        alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
         )
-        tube_alpha_tip_y = (
-        alpha_x*axis_y_tube_axes2_in_base_x + alpha_y*axis_y_tube_axes2_in_base_y +
-            alpha_z*axis_y_tube_axes2_in_base_z
+        tube_alpha_in_axes2_z = (
+        alpha_x*axis_z_tube_axes2_x + alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z
         )
-        tube_alpha_tip_z = (
-        alpha_x*axis_z_tube_axes2_in_base_x + alpha_y*axis_z_tube_axes2_in_base_y +
-            alpha_z*axis_z_tube_axes2_in_base_z
+        tube_etad_1_t = (
+        tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z
         )
-        tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x - tube_alpha_tip_z*tube_end_p1_r3_y
         tube_etad_1 = tube_nu_1 - tube_etad_1_t
         # (tube-etad_2) acceleration with which the joints turn along moment direction 2
-        tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y - tube_alpha_tip_y*tube_end_p2_r3_x
+        tube_alpha_in_axes2_x = (
+        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        )
+        tube_etad_2_t = (
+        tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y - tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y
+        )
         tube_etad_2 = tube_nu_2 - tube_etad_2_t
         # (tube-etad_3) acceleration with which the joints turn along moment direction 3
-        tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x - tube_alpha_tip_z*tube_end_p3_r3_x
+        tube_etad_3_t = (
+        tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z
+        )
         tube_etad_3 = tube_nu_3 - tube_etad_3_t
         # (tube-qdd_1) acceleration of joint 1
         tube_qdd_1_t = 1.35*tube_etad_1
         tube_qdd_1_t_2 = 1.35*tube_etad_2
         tube_qdd_1_t_3 = 1.35*tube_etad_3
-        tube_qdd_1_t_4 = (
-        inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 + tube_qdd_1_t_2*tube_w_1_t_79 +
-            tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76 + tube_rel_z*tube_w_1_t_77)
+        tube_qdd_1 = (
+        inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
+            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_4*tube_qdd_1_t_2 +
+            tube_qd_1_t_5*tube_qdd_1_t_3)
         )
-        tube_qdd_1_t_5 = (
-        inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
-            tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 - tube_qdd_1_t_2*tube_w_1_t_67 -
-            tube_qdd_1_t_4*tube_w_1_t_69)
+        # (tube-qdd_2) acceleration of joint 2
+        tube_qdd_2_t = (
+        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
+            tube_rel_in_axes2_y*tube_w_1_t_64 + tube_rel_in_axes2_z*tube_w_1_t_65 -
+            tube_qdd_1*tube_w_1_t_69 - tube_qdd_1_t_2*tube_w_1_t_67)
         )
-        tube_qdd_1_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z + tube_qdd_1_t*tube_w_1_t_51 +
-            tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_1_t_4*tube_w_1_t_58 +
-            tube_qdd_1_t_5*tube_w_1_t_53 + tube_rel_y*tube_w_1_t_50)
+        tube_qdd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
+            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
+            + tube_rel_in_axes2_y*tube_w_1_t_50)
         )
-        tube_qdd_1_t_7 = (
-        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_1_t_6*tube_w_1_t_21 +
-            tube_rel_y*tube_w_1_t_14 + inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
-            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
-            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
-            tube_qdd_1_t_5*tube_w_1_t_25
+        tube_qdd_2_t_3 = (
+        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
+            tube_rel_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
+            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
+            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
         )
-        tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7
+        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
-        out_qdd[_qdd_tube[0][leg]] = tube_qdd_1_t_4
-        out_qdd[_qdd_tube[1][leg]] = tube_qdd_1_t_8
-        out_qdd[_qdd_tube[2][leg]] = tube_rel_x
+        # (tube-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_tube[0][leg]] = tube_qdd_1
+        # (tube-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_tube[1][leg]] = tube_qdd_2
+        # (tube-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_tube[2][leg]] = tube_rel_in_axes2_x
     return ok, (out_qdd,)
 
 
@@ -8943,24 +9471,24 @@ def _run_constraints(m, X):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -8987,102 +9515,105 @@ def _run_constraints(m, X):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_z = (
+        tube_n_m1_t_12 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
-        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
-        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
+        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
+        tube_n_m1_in_axes1_z = -tube_c_2*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1)
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_x = (
+        tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_y = (
+        tube_n_m2_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_z = (
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
+        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
+        tube_n_m2_in_axes1_z = (
+        tube_c_2*(tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4) -
+            tube_s_2*(tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2)
+        )
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_z = (
+        tube_n_m3_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
-        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
-        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*(tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x)
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = (
-        -tube_c_2*(tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y) -
-            tube_s_2*(-tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2)
-        )
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_s_2*(tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x)
+        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
+        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
+        tube_n_m3_t_5 = tube_s_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1)
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
-        # (tube-mu1_c3) moment along direction 1 that goes with it
-        inv_tube_size_c3 = 1.0/tube_size_c3
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        # (tube-mu2_c3) moment along direction 2 that goes with it
+        tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-phi_c1) distance by which the leg misses the platform, along a direction left out
+        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
         tube_phi_c1 = (
-        inv_tube_f_c1_t_26*tube_end_p1_r3_x*tube_n_m3_t*tube_root_2 -
-            inv_tube_f_c1_t_26*tube_end_p3_r3_y*tube_n_m1_t_10*tube_root_2
+        inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_root_2 -
+            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_root_2
         )
         # (tube-phi_c2) distance by which the leg misses the platform, along a direction left out
         tube_phi_c2 = (
-        inv_tube_f_c1_t_26*tube_end_p1_r3_x*tube_end_p3_r3_x*tube_root_1 +
-            inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_end_p3_r3_y*tube_root_1
+        inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
+            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1
         )
         # (tube-phi_c3) angle by which the leg misses the platform, about a direction left out
         tube_phi_c3 = (
-        inv_tube_size_c3*tube_end_p1_r3_x*tube_f_c3_t +
-            inv_tube_size_c3*tube_end_p3_r3_y*tube_f_c3_t_2 -
-            inv_tube_size_c3*(tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x)
+        tube_end_p1_in_axes2_x*tube_m1_c3_t*tube_mu2_c3 +
+            tube_end_p3_in_axes2_y*tube_m3_c3*tube_mu2_c3 - tube_mu2_c3*(tube_c_1*tube_n_m2_t +
+            tube_n_m2_t_2*tube_s_1)
         )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
             > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0))
         )
+        # (tube-phi_c1) distance by which the leg misses the platform, along a direction left out
         out_constraints[_constraints_tube[0][leg]] = tube_phi_c1
+        # (tube-phi_c2) distance by which the leg misses the platform, along a direction left out
         out_constraints[_constraints_tube[1][leg]] = tube_phi_c2
+        # (tube-phi_c3) angle by which the leg misses the platform, about a direction left out
         out_constraints[_constraints_tube[2][leg]] = tube_phi_c3
     return ok, (out_constraints,)
 
@@ -9158,27 +9689,29 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_link3_mass,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -9191,185 +9724,199 @@ def _run_legs(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_t = omega_y*ups_q_in_base_z - omega_z*ups_q_in_base_y
-        ups_S_dot_t_2 = omega_z*ups_q_in_base_x - omega_x*ups_q_in_base_z
-        ups_S_dot_t_3 = omega_x*ups_q_in_base_y - omega_y*ups_q_in_base_x
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
+        ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
+        ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
         ups_S_dot_x = t_dot_x + ups_S_dot_t
         ups_S_dot_y = t_dot_y + ups_S_dot_t_2
         ups_S_dot_z = t_dot_z + ups_S_dot_t_3
-        ups_S_dot_tip_x = (
-        ups_S_dot_x*ups_axis_x_x + ups_S_dot_y*ups_axis_x_y + ups_S_dot_z*ups_axis_x_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_dot_x + axis_x_ups_axes2_y*ups_S_dot_y +
+            axis_x_ups_axes2_z*ups_S_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
+            axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
+        axis_y_ups_axes2_x = (
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
+        )
+        axis_y_ups_axes2_y = (
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
+        )
+        axis_y_ups_axes2_z = (
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
+        )
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*ups_S_dot_x +
-            axis_z_ups_axes2_in_base_y*ups_S_dot_y + axis_z_ups_axes2_in_base_z*ups_S_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-a_p) acceleration of the connection point without its centripetal part
-        ups_a_p_x = t_ddot_x + alpha_y*ups_q_in_base_z - alpha_z*ups_q_in_base_y
-        ups_a_p_y = t_ddot_y + alpha_z*ups_q_in_base_x - alpha_x*ups_q_in_base_z
-        ups_a_p_z = t_ddot_z + alpha_x*ups_q_in_base_y - alpha_y*ups_q_in_base_x
+        ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
+        ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
+        ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x
         # (ups-S_ddot) acceleration of the connection point
         ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2
         ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3
         ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t
-        ups_S_ddot_t = axis_y_ups_axes2_x*ups_S_ddot_x
-        ups_S_ddot_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
-        ups_S_ddot_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
-        ups_S_ddot_tip_z = (
-        axis_z_ups_axes2_in_base_x*ups_S_ddot_x + axis_z_ups_axes2_in_base_y*ups_S_ddot_y +
-            axis_z_ups_axes2_in_base_z*ups_S_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
+            axis_z_ups_axes2_z*ups_S_ddot_z
+        )
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
-        ups_qdd_1_t = (
-        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_x = (
-        ups_S_ddot_x*ups_axis_x_x + ups_S_ddot_y*ups_axis_x_y + ups_S_ddot_z*ups_axis_x_z -
-            ups_g_r3_x
-        )
-        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
-        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_t = ups_qdd_1*ups_s_2
-        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
+        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
-        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
-        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
+        ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
-        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
-        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x
+        ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
+        ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
+        ups_B_2_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        )
+        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
+        ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2
+        ups_acc_3_in_axes2_x = (
+        axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
+            axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
+        )
+        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_x = (
-        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
-            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
-            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
-            ups_acc_3_z*ups_h_3_z
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_mu_2_t_3 = ups_qd_2*ups_qd_2
+        ups_mu_2_in_axes2_x = (
+        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
+            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_y = (
-        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
-            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
-            ups_g_r3_x*ups_h_2_y
+        ups_mu_2_in_axes2_y = (
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
-            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
-            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
-            ups_g_r3_y*ups_h_2_x
+        ups_mu_2_in_axes2_z = (
+        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
+            ups_mu_2_t_2) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
-        ups_c_y = (
-        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_in_axes2_y = (
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
+            ups_mu_2_t_3)
         )
-        ups_c_z = (
-        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
+        ups_c_in_axes2_z = (
+        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        ups_c_true_in_axes2_x = (
+        ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z - ups_acc_3_in_axes2_x*ups_link3_mass -
+            ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y - ups_h_3_in_spec2_x*(-ups_mu_2_t_2 -
+            ups_mu_2_t_3)
+        )
+        ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass
+        ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass
         ups_c_true_x = (
-        ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y + ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) -
-            ups_acc_3_x*ups_link3_mass
+        axis_x_ups_axes2_x*ups_c_true_in_axes2_x + axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_x*ups_c_true_in_axes2_z
         )
-        ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass
-        ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass
-        ups_c_true_in_base_x = (
-        axis_y_ups_axes2_x*ups_c_true_y + axis_z_ups_axes2_in_base_x*ups_c_true_z +
-            ups_axis_x_x*ups_c_true_x
+        ups_c_true_y = (
+        axis_x_ups_axes2_y*ups_c_true_in_axes2_x + axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_y*ups_c_true_in_axes2_z
         )
-        ups_c_true_in_base_y = (
-        axis_y_ups_axes2_y*ups_c_true_y + axis_z_ups_axes2_in_base_y*ups_c_true_z +
-            ups_axis_x_y*ups_c_true_x
-        )
-        ups_c_true_in_base_z = (
-        axis_y_ups_axes2_z*ups_c_true_y + axis_z_ups_axes2_in_base_z*ups_c_true_z +
-            ups_axis_x_z*ups_c_true_x
+        ups_c_true_z = (
+        axis_x_ups_axes2_z*ups_c_true_in_axes2_x + axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) >
             _TOLERANCE * 1.38293) & (abs(ups_root_2) > _TOLERANCE * 1.38293))
         )
-        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_in_base_x
-        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_in_base_y
-        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_in_base_z
-        out_drive[_drive_ups[0][leg]] = ups_axis_x_x
-        out_drive[_drive_ups[1][leg]] = ups_axis_x_y
-        out_drive[_drive_ups[2][leg]] = ups_axis_x_z
+        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
+        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_y
+        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_z
+        # (ups-w_3) reciprocal vector 3
+        out_drive[_drive_ups[0][leg]] = axis_x_ups_axes2_x
+        out_drive[_drive_ups[1][leg]] = axis_x_ups_axes2_y
+        out_drive[_drive_ups[2][leg]] = axis_x_ups_axes2_z
     for leg, k in legs[1]:
         (
-        tube_J_group_2_xy, tube_J_group_2_xz, tube_J_group_2_yz, tube_Sigma_2_xx, tube_Sigma_2_yy,
-            tube_Sigma_2_zz, tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz,
-            tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz, tube_base_frame_zx,
-            tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x, tube_base_point_y,
-            tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x, tube_g_r0_y,
-            tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y, tube_h_3_z,
-            tube_link3_mass, tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
+        tube_J_group_2_in_axes2_xy, tube_J_group_2_in_axes2_xz, tube_J_group_2_in_axes2_yz,
+            tube_Sigma_2_in_axes2_xx, tube_Sigma_2_in_axes2_yy, tube_Sigma_2_in_axes2_zz,
+            tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
+            tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
+            tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
+            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
+            tube_h_2_in_spec2_x, tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+            tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link3_mass,
+            tube_platform_joint_rotation_xx, tube_platform_joint_rotation_xy,
             tube_platform_joint_rotation_xz, tube_platform_joint_rotation_yx,
             tube_platform_joint_rotation_yy, tube_platform_joint_rotation_yz,
             tube_platform_joint_rotation_zx, tube_platform_joint_rotation_zy,
@@ -9377,18 +9924,18 @@ def _run_legs(m, X, V, A):
             tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -9401,53 +9948,68 @@ def _run_legs(m, X, V, A):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        # (tube-S_dot) velocity of the connection point
+        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_S_dot_t = tube_s_1*tube_s_2
+        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        axis_y_tube_axes2_x = (
+        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_xy
         )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
+        axis_y_tube_axes2_y = (
+        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_yy
         )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
+        axis_y_tube_axes2_z = (
+        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
+            tube_S_dot_t_2*tube_base_frame_zy
         )
         axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
+        axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
         )
         axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
+        axis_y_tube_axes2_z*axis_z_tube_axes2_x - axis_y_tube_axes2_x*axis_z_tube_axes2_z
         )
         axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
+        axis_y_tube_axes2_x*axis_z_tube_axes2_y - axis_y_tube_axes2_y*axis_z_tube_axes2_x
+        )
+        tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y
+        tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z
+        tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x
+        tube_S_dot_x = t_dot_x + tube_S_dot_t_3
+        tube_S_dot_y = t_dot_y + tube_S_dot_t_4
+        tube_S_dot_z = t_dot_z + tube_S_dot_t_5
+        tube_S_dot_in_axes2_x = (
+        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
+            axis_x_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_dot_x + axis_y_tube_axes2_y*tube_S_dot_y +
+            axis_y_tube_axes2_z*tube_S_dot_z
+        )
+        tube_S_dot_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_dot_x + axis_z_tube_axes2_y*tube_S_dot_y +
+            axis_z_tube_axes2_z*tube_S_dot_z
         )
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
@@ -9475,107 +10037,165 @@ def _run_legs(m, X, V, A):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_z = (
+        tube_n_m1_t_12 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r1_y = -tube_c_1*tube_end_p1_r0_y - tube_end_p1_r0_x*tube_s_1
-        tube_end_p1_r3_x = tube_end_p1_r0_z*tube_s_2 - tube_c_2*tube_end_p1_r1_y
-        tube_end_p1_r3_y = -tube_c_2*tube_end_p1_r0_z - tube_end_p1_r1_y*tube_s_2
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
+        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_x = (
+        tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
             tube_n_m1_t_3*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_y = (
+        tube_n_m2_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r0_z = (
+        tube_n_m2_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_x = tube_end_p2_r0_y*tube_s_1 - tube_c_1*tube_end_p2_r0_x
-        tube_end_p2_r1_y = -tube_c_1*tube_end_p2_r0_y - tube_end_p2_r0_x*tube_s_1
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_z = (
+        tube_n_m3_t_3 = (
         tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r1_y = -tube_c_1*tube_end_p3_r0_y - tube_end_p3_r0_x*tube_s_1
-        tube_end_p3_r3_x = tube_end_p3_r0_z*tube_s_2 - tube_c_2*tube_end_p3_r1_y
-        tube_end_p3_r3_y = -tube_c_2*tube_end_p3_r0_z - tube_end_p3_r1_y*tube_s_2
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
+        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
+        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
-        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
+        )
+        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
+        tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
+        tube_mu_c1_in_axes2_z = (
+        -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
+        )
+        tube_mu_c1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z
+        )
+        tube_mu_c1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z
+        )
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
+        tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
+        tube_mu_c2_in_axes2_z = (
+        tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c2_x = (
+        axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_x*tube_mu_c2_t
+        )
+        tube_mu_c2_y = (
+        axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t
+        )
+        tube_mu_c2_z = (
+        axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
+            axis_x_tube_axes2_z*tube_mu_c2_t
+        )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        # (tube-mu_c3) the moment that goes with it
+        tube_mu_c3_in_axes2_x = (
+        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        )
+        tube_mu_c3_in_axes2_y = (
+        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        )
+        tube_mu_c3_in_axes2_z = (
+        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c3_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z
+        )
+        tube_mu_c3_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z
+        )
+        tube_mu_c3_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y +
+            axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z
+        )
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
-        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
-        tube_w_1_t_8 = 1.35*tube_f_c2_t
-        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_5
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
         tube_w_1_t_12 = 1.35*tube_mu3_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -9596,10 +10216,10 @@ def _run_legs(m, X, V, A):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -9622,23 +10242,23 @@ def _run_legs(m, X, V, A):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -9646,12 +10266,12 @@ def _run_legs(m, X, V, A):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -9666,405 +10286,383 @@ def _run_legs(m, X, V, A):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        inv_tube_w_1_t_157 = 1.0/tube_w_1_t_75
-        tube_w_1_t_76 = inv_tube_w_1_t_157*tube_w_1_t_70
-        tube_w_1_t_77 = inv_tube_w_1_t_157*tube_w_1_t_71
-        tube_w_1_t_78 = inv_tube_w_1_t_157*tube_w_1_t_72
-        tube_w_1_t_79 = inv_tube_w_1_t_157*tube_w_1_t_73
-        tube_w_1_t_80 = inv_tube_w_1_t_157*tube_w_1_t_74
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_t = omega_y*tube_q_in_base_z - omega_z*tube_q_in_base_y
-        tube_S_dot_t_2 = omega_z*tube_q_in_base_x - omega_x*tube_q_in_base_z
-        tube_S_dot_t_3 = omega_x*tube_q_in_base_y - omega_y*tube_q_in_base_x
-        tube_S_dot_x = t_dot_x + tube_S_dot_t
-        tube_S_dot_y = t_dot_y + tube_S_dot_t_2
-        tube_S_dot_z = t_dot_z + tube_S_dot_t_3
         # (tube-eta_1) rate at which the joints turn along moment direction 1
-        tube_omega_tip_x = (
+        tube_omega_in_axes2_y = (
+        axis_y_tube_axes2_x*omega_x + axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z
+        )
+        tube_omega_in_axes2_z = (
+        axis_z_tube_axes2_x*omega_x + axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z
+        )
+        tube_eta_1 = (
+        tube_n_m1_in_axes2_z*tube_omega_in_axes2_z - tube_end_p1_in_axes2_z*tube_omega_in_axes2_y
+        )
+        # (tube-eta_2) rate at which the joints turn along moment direction 2
+        tube_omega_in_axes2_x = (
         axis_x_tube_axes2_x*omega_x + axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z
         )
-        tube_omega_tip_y = (
-        axis_y_tube_axes2_in_base_x*omega_x + axis_y_tube_axes2_in_base_y*omega_y +
-            axis_y_tube_axes2_in_base_z*omega_z
+        tube_eta_2 = (
+        tube_n_m2_in_axes2_y*tube_omega_in_axes2_y - tube_end_p2_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_omega_tip_z = (
-        axis_z_tube_axes2_in_base_x*omega_x + axis_z_tube_axes2_in_base_y*omega_y +
-            axis_z_tube_axes2_in_base_z*omega_z
-        )
-        tube_eta_1 = tube_end_p1_r3_y*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_y
-        # (tube-eta_2) rate at which the joints turn along moment direction 2
-        tube_eta_2 = tube_end_p2_r3_x*tube_omega_tip_y - tube_end_p2_r3_y*tube_omega_tip_x
         # (tube-eta_3) rate at which the joints turn along moment direction 3
-        tube_eta_3 = tube_end_p3_r3_x*tube_omega_tip_z - tube_end_p3_r1_x*tube_omega_tip_x
-        # (tube-S_dot) velocity of the connection point
-        tube_S_dot_tip_x = (
-        axis_x_tube_axes2_x*tube_S_dot_x + axis_x_tube_axes2_y*tube_S_dot_y +
-            axis_x_tube_axes2_z*tube_S_dot_z
+        tube_eta_3 = (
+        tube_n_m3_in_axes2_z*tube_omega_in_axes2_z - tube_end_p3_in_axes2_z*tube_omega_in_axes2_x
         )
-        tube_S_dot_tip_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_dot_x + axis_y_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_1) rate of joint 1
+        inv_tube_w_1_t_75 = 1.0/tube_w_1_t_75
+        tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70
+        tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71
+        tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72
+        tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73
+        tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74
+        tube_qd_1_t_6 = 1.35*tube_eta_1
+        tube_qd_1_t_7 = 1.35*tube_eta_2
+        tube_qd_1_t_8 = 1.35*tube_eta_3
+        tube_qd_1 = (
+        inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
+            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_4*tube_qd_1_t_7 +
+            tube_qd_1_t_5*tube_qd_1_t_8)
         )
-        tube_S_dot_tip_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_dot_x + axis_z_tube_axes2_in_base_y*tube_S_dot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_dot_z
+        # (tube-qd_2) rate of joint 2
+        tube_qd_2_t = (
+        inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
+            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67)
         )
-        # (tube-qd_3) rate of joint 3
-        tube_qd_3_t = 1.35*tube_eta_1
-        tube_qd_3_t_2 = 1.35*tube_eta_2
-        tube_qd_3_t_3 = 1.35*tube_eta_3
-        tube_qd_3_t_4 = (
-        inv_tube_w_1_t_157*(tube_S_dot_tip_y*tube_w_1_t_76 + tube_S_dot_tip_z*tube_w_1_t_77 +
-            tube_qd_3_t*tube_w_1_t_78 + tube_qd_3_t_2*tube_w_1_t_79 + tube_qd_3_t_3*tube_w_1_t_80)
+        tube_qd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
+            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53)
         )
-        tube_qd_3_t_5 = (
-        inv_tube_w_1_t_129*(tube_S_dot_tip_y*tube_w_1_t_64 + tube_S_dot_tip_z*tube_w_1_t_65 +
-            tube_qd_3_t*tube_w_1_t_66 + tube_qd_3_t_3*tube_w_1_t_68 - tube_qd_3_t_2*tube_w_1_t_67
-            - tube_qd_3_t_4*tube_w_1_t_69)
+        tube_qd_2_t_3 = (
+        tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t_6*tube_w_1_t_15 +
+            tube_qd_1_t_8*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
+            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
+            tube_qd_2_t*tube_w_1_t_25
         )
-        tube_qd_3_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_S_dot_tip_z + tube_S_dot_tip_y*tube_w_1_t_50 +
-            tube_qd_3_t*tube_w_1_t_51 + tube_qd_3_t_3*tube_w_1_t_52 + tube_qd_3_t_4*tube_w_1_t_58
-            + tube_qd_3_t_5*tube_w_1_t_53)
-        )
-        tube_qd_3_t_7 = (
-        tube_S_dot_tip_y*tube_w_1_t_14 + tube_qd_3_t*tube_w_1_t_15 + tube_qd_3_t_3*tube_w_1_t_16 +
-            tube_qd_3_t_6*tube_w_1_t_21 +
-            inv_tube_w_1_t_57*tube_w_1_t_17*(tube_S_dot_tip_y*tube_w_1_t_34 +
-            tube_qd_3_t*tube_w_1_t_35 + tube_qd_3_t_3*tube_w_1_t_36 + tube_qd_3_t_4*tube_w_1_t_45
-            + tube_qd_3_t_5*tube_w_1_t_41 - tube_qd_3_t_6*tube_w_1_t_37) -
-            tube_qd_3_t_4*tube_w_1_t_29 - tube_qd_3_t_5*tube_w_1_t_25
-        )
-        tube_qd_3_t_8 = inv_tube_w_1_t_16*tube_qd_3_t_7
+        tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_t = tube_qd_3_t_4*tube_s_2
-        tube_omega_1_t_2 = tube_c_2*tube_qd_3_t_4
-        # (tube-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        tube_zeta_2_x = tube_omega_1_t_2*tube_qd_3_t_8
-        tube_zeta_2_y = tube_omega_1_t*tube_qd_3_t_8
+        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
+        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
-        tube_W_2_t = tube_omega_1_t*tube_omega_1_t
-        tube_W_2_t_2 = tube_omega_1_t_2*tube_omega_1_t_2
-        tube_W_2_t_3 = tube_qd_3_t_8*tube_qd_3_t_8
-        tube_W_2_xy = tube_omega_1_t*tube_omega_1_t_2
+        tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
+        tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
+        tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y
+        # (tube-a_p) acceleration of the connection point without its centripetal part
+        tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y
+        tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z
+        tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x
+        # (tube-S_ddot) acceleration of the connection point
+        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4
+        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
+        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_root_2*tube_zeta_2_y
-        tube_bias_t_2 = tube_W_2_xy*tube_root_2
-        tube_bias_t_3 = 2.0*tube_S_dot_tip_x
-        tube_bias_t_4 = tube_bias_t_3*tube_qd_3_t_8
-        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_t_2
-        tube_bias_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_z = 2.0*tube_bias_t + tube_bias_t_5
-        # (tube-nd_m1) rate of moment direction 1
-        tube_nd_m1_y = (
-        tube_end_p1_r3_x*tube_omega_1_t_2 + tube_end_p1_r3_x*tube_omega_tip_y -
-            tube_end_p1_r3_y*tube_omega_tip_x
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2
+        tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
+        tube_bias_t_4 = tube_bias_t_3*tube_qd_2
+        tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
+        tube_bias_in_axes2_z = 2.0*tube_bias_t + tube_bias_t_5
+        # (tube-rel) acceleration of the connection point left to the joint accelerations
+        tube_rel_in_axes2_y = (
+        axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
+            axis_y_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_y
         )
-        tube_nd_m1_z = (
-        tube_end_p1_r3_x*tube_omega_tip_z - tube_end_p1_r1_x*tube_omega_tip_x -
-            tube_end_p1_r3_x*tube_qd_3_t_8
+        tube_rel_in_axes2_z = (
+        axis_z_tube_axes2_x*tube_S_ddot_x + axis_z_tube_axes2_y*tube_S_ddot_y +
+            axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
+        )
+        # (tube-nd_m1) rate of moment direction 1
+        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_nd_m1_in_axes2_y = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
+            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x
+        )
+        tube_nd_m1_in_axes2_z = (
+        tube_end_p1_in_axes2_x*tube_omega_in_axes2_z - tube_end_p1_in_axes2_x*tube_qd_2 -
+            tube_end_p1_in_axes2_z*tube_omega_in_axes2_x
         )
         # (tube-nu_1) bias of the angular acceleration along moment direction 1
-        tube_nu_1_t = tube_omega_1_t - tube_omega_tip_x
-        tube_nu_1_t_2 = tube_omega_1_t_2 + tube_omega_tip_y
-        tube_nu_1_t_3 = tube_omega_tip_z - tube_qd_3_t_8
+        tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x
+        tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y
+        tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2
         tube_nu_1_t_4 = (
-        tube_nd_m1_y*tube_nu_1_t_2 + tube_nd_m1_z*tube_nu_1_t_3 -
-            tube_nu_1_t*(tube_end_p1_r1_x*tube_qd_3_t_8 - tube_end_p1_r3_y*tube_omega_1_t_2)
+        tube_nd_m1_in_axes2_y*tube_nu_1_t_2 + tube_nd_m1_in_axes2_z*tube_nu_1_t_3 -
+            tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
+            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y)
         )
-        tube_nu_1 = tube_nu_1_t_4 - tube_end_p1_r1_x*tube_zeta_2_y
+        tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_nd_m2_x = (
-        tube_end_p2_r1_x*tube_omega_tip_x - tube_end_p2_r1_x*tube_omega_1_t -
-            tube_end_p2_r3_x*tube_omega_tip_z
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_nd_m2_in_axes2_x = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z
         )
-        tube_nd_m2_y = (
-        tube_end_p2_r1_x*tube_omega_1_t_2 + tube_end_p2_r1_x*tube_omega_tip_y -
-            tube_end_p2_r3_y*tube_omega_tip_z
+        tube_nd_m2_in_axes2_y = (
+        tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
+            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y
         )
         # (tube-nu_2) bias of the angular acceleration along moment direction 2
-        tube_nu_2_t = tube_end_p2_r3_y*tube_zeta_2_x - tube_end_p2_r3_x*tube_zeta_2_y
+        tube_nu_2_t = (
+        -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
+        )
         tube_nu_2_t_2 = (
-        tube_nd_m2_x*tube_nu_1_t + tube_nu_1_t_3*(tube_end_p2_r3_y*tube_omega_1_t_2 -
-            tube_end_p2_r3_x*tube_omega_1_t) - tube_nd_m2_y*tube_nu_1_t_2
+        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
         )
         tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
         # (tube-nd_m3) rate of moment direction 3
-        tube_nd_m3_x = (
-        tube_end_p3_r3_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_omega_1_t -
-            tube_end_p3_r3_y*tube_omega_tip_x
+        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_nd_m3_in_axes2_x = (
+        tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x
         )
-        tube_nd_m3_z = (
-        tube_end_p3_r1_x*tube_omega_tip_y + tube_end_p3_r3_y*tube_qd_3_t_8 -
-            tube_end_p3_r3_y*tube_omega_tip_z
+        tube_nd_m3_in_axes2_z = (
+        tube_end_p3_in_axes2_y*tube_qd_2 + tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
+            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z
         )
         # (tube-nu_3) bias of the angular acceleration along moment direction 3
         tube_nu_3_t = (
-        tube_nd_m3_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_r1_x*tube_qd_3_t_8 +
-            tube_end_p3_r3_x*tube_omega_1_t) - tube_nd_m3_z*tube_nu_1_t_3
+        tube_nd_m3_in_axes2_x*tube_nu_1_t + tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
+            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3
         )
-        tube_nu_3 = -tube_nu_3_t - tube_end_p3_r1_x*tube_zeta_2_x
-        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_g_r1_x = tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x
-        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
-        tube_g_r3_x = tube_g_r0_z*tube_s_2 - tube_c_2*tube_g_r1_y
-        tube_g_r3_y = -tube_c_2*tube_g_r0_z - tube_g_r1_y*tube_s_2
-        # (tube-mu_c1) the moment that goes with it
-        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
-        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
-        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
-        tube_mu_c1_in_base_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z
-        )
-        tube_mu_c1_in_base_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_mu_c1_t +
-            axis_z_tube_axes2_in_base_y*tube_mu_c1_z
-        )
-        tube_mu_c1_in_base_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_z*tube_mu_c1_t +
-            axis_z_tube_axes2_in_base_z*tube_mu_c1_z
-        )
-        # (tube-mu_c2) the moment that goes with it
-        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
-        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
-        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
-        tube_mu_c2_in_base_x = (
-        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z -
-            axis_x_tube_axes2_x*tube_mu_c2_t_2
-        )
-        tube_mu_c2_in_base_y = (
-        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_mu_c2_z -
-            axis_x_tube_axes2_y*tube_mu_c2_t_2
-        )
-        tube_mu_c2_in_base_z = (
-        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_z*tube_mu_c2_z -
-            axis_x_tube_axes2_z*tube_mu_c2_t_2
-        )
-        # (tube-mu_c3) the moment that goes with it
-        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
-        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
-        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
-        tube_mu_c3_in_base_x = (
-        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_y = (
-        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_z = (
-        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
-        )
-        # (tube-a_p) acceleration of the connection point without its centripetal part
-        tube_a_p_x = t_ddot_x + alpha_y*tube_q_in_base_z - alpha_z*tube_q_in_base_y
-        tube_a_p_y = t_ddot_y + alpha_z*tube_q_in_base_x - alpha_x*tube_q_in_base_z
-        tube_a_p_z = t_ddot_z + alpha_x*tube_q_in_base_y - alpha_y*tube_q_in_base_x
-        # (tube-S_ddot) acceleration of the connection point
-        tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_3 - omega_z*tube_S_dot_t_2
-        tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t - omega_x*tube_S_dot_t_3
-        tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_2 - omega_y*tube_S_dot_t
-        # (tube-rel) acceleration of the connection point left to the joint accelerations
-        tube_rel_y = (
-        axis_y_tube_axes2_in_base_x*tube_S_ddot_x + axis_y_tube_axes2_in_base_y*tube_S_ddot_y +
-            axis_y_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_y
-        )
-        tube_rel_z = (
-        axis_z_tube_axes2_in_base_x*tube_S_ddot_x + axis_z_tube_axes2_in_base_y*tube_S_ddot_y +
-            axis_z_tube_axes2_in_base_z*tube_S_ddot_z - tube_bias_z
-        )
+        tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t
         # (tube-etad_1) acceleration with which the joints turn along moment direction 1
-        tube_alpha_tip_x = (
-        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        tube_alpha_in_axes2_y = (
+        alpha_x*axis_y_tube_axes2_x + alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z
         )
-        tube_alpha_tip_y = (
-        alpha_x*axis_y_tube_axes2_in_base_x + alpha_y*axis_y_tube_axes2_in_base_y +
-            alpha_z*axis_y_tube_axes2_in_base_z
+        tube_alpha_in_axes2_z = (
+        alpha_x*axis_z_tube_axes2_x + alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z
         )
-        tube_alpha_tip_z = (
-        alpha_x*axis_z_tube_axes2_in_base_x + alpha_y*axis_z_tube_axes2_in_base_y +
-            alpha_z*axis_z_tube_axes2_in_base_z
+        tube_etad_1_t = (
+        tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z
         )
-        tube_etad_1_t = tube_alpha_tip_y*tube_end_p1_r1_x - tube_alpha_tip_z*tube_end_p1_r3_y
         tube_etad_1 = tube_nu_1 - tube_etad_1_t
         # (tube-etad_2) acceleration with which the joints turn along moment direction 2
-        tube_etad_2_t = tube_alpha_tip_x*tube_end_p2_r3_y - tube_alpha_tip_y*tube_end_p2_r3_x
+        tube_alpha_in_axes2_x = (
+        alpha_x*axis_x_tube_axes2_x + alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z
+        )
+        tube_etad_2_t = (
+        tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y - tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y
+        )
         tube_etad_2 = tube_nu_2 - tube_etad_2_t
         # (tube-etad_3) acceleration with which the joints turn along moment direction 3
-        tube_etad_3_t = tube_alpha_tip_x*tube_end_p3_r1_x - tube_alpha_tip_z*tube_end_p3_r3_x
+        tube_etad_3_t = (
+        tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z - tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z
+        )
         tube_etad_3 = tube_nu_3 - tube_etad_3_t
         # (tube-qdd_1) acceleration of joint 1
         tube_qdd_1_t = 1.35*tube_etad_1
         tube_qdd_1_t_2 = 1.35*tube_etad_2
         tube_qdd_1_t_3 = 1.35*tube_etad_3
-        tube_qdd_1_t_4 = (
-        inv_tube_w_1_t_157*(tube_qdd_1_t*tube_w_1_t_78 + tube_qdd_1_t_2*tube_w_1_t_79 +
-            tube_qdd_1_t_3*tube_w_1_t_80 + tube_rel_y*tube_w_1_t_76 + tube_rel_z*tube_w_1_t_77)
+        tube_qdd_1 = (
+        inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
+            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_4*tube_qdd_1_t_2 +
+            tube_qd_1_t_5*tube_qdd_1_t_3)
         )
-        tube_qdd_1_t_5 = (
-        inv_tube_w_1_t_129*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
-            tube_rel_y*tube_w_1_t_64 + tube_rel_z*tube_w_1_t_65 - tube_qdd_1_t_2*tube_w_1_t_67 -
-            tube_qdd_1_t_4*tube_w_1_t_69)
+        # (tube-qdd_2) acceleration of joint 2
+        tube_qdd_2_t = (
+        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
+            tube_rel_in_axes2_y*tube_w_1_t_64 + tube_rel_in_axes2_z*tube_w_1_t_65 -
+            tube_qdd_1*tube_w_1_t_69 - tube_qdd_1_t_2*tube_w_1_t_67)
         )
-        tube_qdd_1_t_6 = (
-        inv_tube_w_1_t_95*(inv_tube_w_1_t_95*tube_rel_z + tube_qdd_1_t*tube_w_1_t_51 +
-            tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_1_t_4*tube_w_1_t_58 +
-            tube_qdd_1_t_5*tube_w_1_t_53 + tube_rel_y*tube_w_1_t_50)
+        tube_qdd_2_t_2 = (
+        inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
+            tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 + tube_qdd_2_t*tube_w_1_t_53
+            + tube_rel_in_axes2_y*tube_w_1_t_50)
         )
-        tube_qdd_1_t_7 = (
-        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_1_t_6*tube_w_1_t_21 +
-            tube_rel_y*tube_w_1_t_14 + inv_tube_w_1_t_57*tube_w_1_t_17*(tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_1_t_4*tube_w_1_t_45 +
-            tube_qdd_1_t_5*tube_w_1_t_41 + tube_rel_y*tube_w_1_t_34 -
-            tube_qdd_1_t_6*tube_w_1_t_37) - tube_qdd_1_t_4*tube_w_1_t_29 -
-            tube_qdd_1_t_5*tube_w_1_t_25
+        tube_qdd_2_t_3 = (
+        tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 + tube_qdd_2_t_2*tube_w_1_t_21 +
+            tube_rel_in_axes2_y*tube_w_1_t_14 +
+            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
+            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
+            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
+            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25
         )
-        tube_qdd_1_t_8 = inv_tube_w_1_t_16*tube_qdd_1_t_7
+        tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         # (tube-alpha_1) angular acceleration of link 1
-        tube_alpha_1_t = tube_qdd_1_t_4*tube_s_2
-        tube_alpha_1_t_2 = tube_c_2*tube_qdd_1_t_4
+        tube_alpha_1_in_axes2_x = tube_qdd_1*tube_s_2
+        tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1
         # (tube-alpha_2) angular acceleration of link 2
-        tube_alpha_2_x = tube_alpha_1_t - tube_zeta_2_x
-        tube_alpha_2_y = -tube_alpha_1_t_2 - tube_zeta_2_y
+        tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x
+        tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz
         # (tube-B_2) acceleration tensor of link 2
-        tube_B_2_xy = -tube_W_2_xy - tube_qdd_1_t_8
-        tube_B_2_yx = tube_qdd_1_t_8 - tube_W_2_xy
-        tube_B_2_zx = tube_zeta_2_y - tube_alpha_2_y
-        tube_B_2_zy = tube_alpha_2_x - tube_zeta_2_x
+        tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2
+        tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2
+        tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y
+        tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x
         # (tube-acc_3) acceleration of the reference point of link 3, less gravity
-        tube_acc_3_x = (
+        tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_acc_3_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_t_3*tube_s_2 + tube_acc_3_t_4*tube_c_2
+        tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_t_4*tube_s_2
+        tube_acc_3_in_axes2_x = (
         axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
-            axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_r3_x
+            axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_in_axes2_x
         )
-        tube_acc_3_y = tube_bias_t_4 + tube_qdd_1_t_8*tube_root_2 - tube_bias_t_2 - tube_g_r3_y
-        tube_acc_3_z = tube_bias_t + tube_bias_t_5 - tube_g_r1_x - tube_alpha_2_y*tube_root_2
+        tube_acc_3_in_axes2_y = (
+        tube_bias_t_4 + tube_qdd_2*tube_root_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        )
+        tube_acc_3_in_axes2_z = (
+        tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_root_2
+        )
         # (tube-f_3) inertia force of link 3 less its weight
-        tube_f_3_x = (
-        tube_acc_3_x*tube_link3_mass - tube_B_2_xy*tube_h_3_z - tube_alpha_1_t_2*tube_h_3_y -
-            tube_h_3_x*(tube_W_2_t_2 + tube_W_2_t_3)
+        tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
+        tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
+        tube_f_3_t_3 = tube_qd_2*tube_qd_2
+        tube_f_3_in_axes2_x = (
+        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y +
+            tube_h_3_in_spec2_x*(-tube_f_3_t_2 - tube_f_3_t_3) -
+            tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
         )
-        tube_f_3_y = (
-        tube_B_2_yx*tube_h_3_x + tube_acc_3_y*tube_link3_mass + tube_h_3_z*(tube_W_2_t +
-            tube_W_2_t_3) - tube_alpha_1_t*tube_h_3_y
+        tube_f_3_in_axes2_y = (
+        tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_y*tube_link3_mass +
+            tube_h_3_in_spec2_z*(tube_f_3_t + tube_f_3_t_3) -
+            tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y
         )
-        tube_f_3_z = (
-        tube_B_2_zx*tube_h_3_x + tube_acc_3_z*tube_link3_mass - tube_B_2_zy*tube_h_3_z -
-            tube_h_3_y*(tube_W_2_t + tube_W_2_t_2)
+        tube_f_3_in_axes2_z = (
+        tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_z*tube_link3_mass -
+            tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_y*(tube_f_3_t +
+            tube_f_3_t_2)
         )
         # (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        tube_mu_2_x = (
-        tube_B_2_yx*tube_J_group_2_xz + tube_B_2_zy*tube_Sigma_2_yy +
-            tube_J_group_2_yz*(tube_W_2_t_2 - tube_W_2_t_3) + tube_Sigma_2_zz*tube_alpha_1_t +
-            tube_g_r1_x*tube_h_2_z + tube_g_r3_y*tube_h_2_y - tube_B_2_zx*tube_J_group_2_xy -
-            tube_acc_3_y*tube_h_3_y - tube_acc_3_z*tube_h_3_z
+        tube_mu_2_in_axes2_x = (
+        tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
+            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z
         )
-        tube_mu_2_y = (
-        tube_B_2_zy*tube_J_group_2_xy + tube_acc_3_x*tube_h_3_y + tube_g_r1_x*tube_h_2_x -
-            tube_B_2_xy*tube_J_group_2_yz - tube_B_2_zx*tube_Sigma_2_xx -
-            tube_J_group_2_xz*(tube_W_2_t - tube_W_2_t_3) - tube_Sigma_2_zz*tube_alpha_1_t_2 -
-            tube_acc_3_z*tube_h_3_x - tube_g_r3_x*tube_h_2_y
+        tube_mu_2_in_axes2_y = (
+        tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
+            - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_y
         )
-        tube_mu_2_z = (
-        tube_B_2_yx*tube_Sigma_2_xx + tube_J_group_2_xy*(tube_W_2_t - tube_W_2_t_2) +
-            tube_J_group_2_xz*tube_alpha_1_t + tube_acc_3_x*tube_h_3_z + tube_acc_3_y*tube_h_3_x -
-            tube_B_2_xy*tube_Sigma_2_yy - tube_J_group_2_yz*tube_alpha_1_t_2 -
-            tube_g_r3_x*tube_h_2_z - tube_g_r3_y*tube_h_2_x
+        tube_mu_2_in_axes2_z = (
+        tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx + tube_J_group_2_in_axes2_xy*(tube_f_3_t -
+            tube_f_3_t_2) + tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
+            tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
+            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
+            - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_y = tube_mu_2_y - tube_f_3_z*tube_root_2
-        tube_N_2_z = tube_mu_2_z + tube_f_3_y*tube_root_2
+        tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2
+        tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2
         # (tube-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_G_t = inv_tube_w_1_t_16*tube_N_2_z
-        tube_G_t_2 = inv_tube_w_1_t_57*tube_G_t*tube_w_1_t_17
-        tube_G_t_3 = inv_tube_w_1_t_95*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
+        tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
+        tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
+        tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 - tube_G_t_2*tube_w_1_t_37)
         tube_G_t_4 = (
-        inv_tube_w_1_t_129*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
+        inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 + tube_G_t_3*tube_w_1_t_53 -
             tube_G_t*tube_w_1_t_25)
         )
         tube_G_t_5 = (
-        inv_tube_w_1_t_157*(tube_G_t_2*tube_w_1_t_45 + tube_G_t_3*tube_w_1_t_58 +
-            tube_mu_2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 - tube_G_t_4*tube_w_1_t_69 -
-            tube_N_2_y*tube_c_2)
+        inv_tube_w_1_t_75*(tube_G_t_2*tube_w_1_t_45 + tube_G_t_3*tube_w_1_t_58 +
+            tube_N_2_in_axes2_y*tube_c_2 + tube_mu_2_in_axes2_x*tube_s_2 - tube_G_t*tube_w_1_t_29
+            - tube_G_t_4*tube_w_1_t_69)
         )
-        tube_G_t_6 = (
+        tube_G_in_axes2_y = (
         tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
-            tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_w_1_t_76
+            tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_qd_1_t
         )
-        tube_G_t_7 = (
-        inv_tube_w_1_t_95*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_w_1_t_77
+        tube_G_in_axes2_z = (
+        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_qd_1_t_2
         )
-        tube_G_t_8 = (
+        # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        tube_G_m1_t = (
         tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
-            tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_w_1_t_78
+            tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3
         )
-        tube_G_t_9 = 1.35*tube_G_t_8
-        tube_G_t_10 = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_w_1_t_79
-        tube_G_t_11 = 1.35*tube_G_t_10
-        tube_G_t_12 = (
+        tube_G_m1 = 1.35*tube_G_m1_t
+        # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4
+        tube_G_m2 = -1.35*tube_G_m2_t
+        # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all freedoms
+        tube_G_m3_t = (
         tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
-            tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_w_1_t_80
+            tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5
         )
-        tube_G_t_13 = 1.35*tube_G_t_12
-        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
-        tube_c_in_base_x = (
-        -axis_x_tube_axes2_x*tube_f_3_x - axis_y_tube_axes2_in_base_x*tube_G_t_6 -
-            axis_z_tube_axes2_in_base_x*tube_G_t_7
-        )
-        tube_c_in_base_y = (
-        -axis_x_tube_axes2_y*tube_f_3_x - axis_y_tube_axes2_in_base_y*tube_G_t_6 -
-            axis_z_tube_axes2_in_base_y*tube_G_t_7
-        )
-        tube_c_in_base_z = (
-        -axis_x_tube_axes2_z*tube_f_3_x - axis_y_tube_axes2_in_base_z*tube_G_t_6 -
-            axis_z_tube_axes2_in_base_z*tube_G_t_7
-        )
+        tube_G_m3 = 1.35*tube_G_m3_t
         # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        tube_G_m_x = tube_G_t_11*tube_end_p2_r3_y - tube_G_t_13*tube_end_p3_r1_x
-        tube_G_m_y = -tube_G_t_11*tube_end_p2_r3_x - tube_G_t_9*tube_end_p1_r1_x
-        tube_G_m_z = tube_G_t_13*tube_end_p3_r3_x + tube_G_t_9*tube_end_p1_r3_y
+        tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y - tube_G_m3*tube_end_p3_in_axes2_z
+        tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y - tube_G_m1*tube_end_p1_in_axes2_z
+        tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z + tube_G_m3*tube_n_m3_in_axes2_z
+        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
+        tube_c_x = (
+        -axis_x_tube_axes2_x*tube_f_3_in_axes2_x - axis_y_tube_axes2_x*tube_G_in_axes2_y -
+            axis_z_tube_axes2_x*tube_G_in_axes2_z
+        )
+        tube_c_y = (
+        -axis_x_tube_axes2_y*tube_f_3_in_axes2_x - axis_y_tube_axes2_y*tube_G_in_axes2_y -
+            axis_z_tube_axes2_y*tube_G_in_axes2_z
+        )
+        tube_c_z = (
+        -axis_x_tube_axes2_z*tube_f_3_in_axes2_x - axis_y_tube_axes2_z*tube_G_in_axes2_y -
+            axis_z_tube_axes2_z*tube_G_in_axes2_z
+        )
         # (tube-c_m) moment of the leg on the platform without actuation
-        tube_c_m_in_base_x = (
-        -axis_x_tube_axes2_x*tube_G_m_x - axis_y_tube_axes2_in_base_x*tube_G_m_y -
-            axis_z_tube_axes2_in_base_x*tube_G_m_z
+        tube_c_m_x = (
+        -axis_x_tube_axes2_x*tube_G_m_in_axes2_x - axis_y_tube_axes2_x*tube_G_m_in_axes2_y -
+            axis_z_tube_axes2_x*tube_G_m_in_axes2_z
         )
-        tube_c_m_in_base_y = (
-        -axis_x_tube_axes2_y*tube_G_m_x - axis_y_tube_axes2_in_base_y*tube_G_m_y -
-            axis_z_tube_axes2_in_base_y*tube_G_m_z
+        tube_c_m_y = (
+        -axis_x_tube_axes2_y*tube_G_m_in_axes2_x - axis_y_tube_axes2_y*tube_G_m_in_axes2_y -
+            axis_z_tube_axes2_y*tube_G_m_in_axes2_z
         )
-        tube_c_m_in_base_z = (
-        -axis_x_tube_axes2_z*tube_G_m_x - axis_y_tube_axes2_in_base_z*tube_G_m_y -
-            axis_z_tube_axes2_in_base_z*tube_G_m_z
+        tube_c_m_z = (
+        -axis_x_tube_axes2_z*tube_G_m_in_axes2_x - axis_y_tube_axes2_z*tube_G_m_in_axes2_y -
+            axis_z_tube_axes2_z*tube_G_m_in_axes2_z
         )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
-        out_leg_force[_leg_force_tube[0][leg]] = tube_c_in_base_x
-        out_leg_force[_leg_force_tube[1][leg]] = tube_c_in_base_y
-        out_leg_force[_leg_force_tube[2][leg]] = tube_c_in_base_z
-        out_leg_force[_leg_force_tube[3][leg]] = tube_c_m_in_base_x
-        out_leg_force[_leg_force_tube[4][leg]] = tube_c_m_in_base_y
-        out_leg_force[_leg_force_tube[5][leg]] = tube_c_m_in_base_z
-        out_constraint_direction[_constraint_direction_tube[0][leg]] = axis_y_tube_axes2_in_base_x
-        out_constraint_direction[_constraint_direction_tube[1][leg]] = axis_y_tube_axes2_in_base_y
-        out_constraint_direction[_constraint_direction_tube[2][leg]] = axis_y_tube_axes2_in_base_z
-        out_constraint_direction[_constraint_direction_tube[3][leg]] = tube_mu_c1_in_base_x
-        out_constraint_direction[_constraint_direction_tube[4][leg]] = tube_mu_c1_in_base_y
-        out_constraint_direction[_constraint_direction_tube[5][leg]] = tube_mu_c1_in_base_z
-        out_constraint_direction[_constraint_direction_tube[6][leg]] = axis_z_tube_axes2_in_base_x
-        out_constraint_direction[_constraint_direction_tube[7][leg]] = axis_z_tube_axes2_in_base_y
-        out_constraint_direction[_constraint_direction_tube[8][leg]] = axis_z_tube_axes2_in_base_z
-        out_constraint_direction[_constraint_direction_tube[9][leg]] = tube_mu_c2_in_base_x
-        out_constraint_direction[_constraint_direction_tube[10][leg]] = tube_mu_c2_in_base_y
-        out_constraint_direction[_constraint_direction_tube[11][leg]] = tube_mu_c2_in_base_z
-        out_constraint_direction[_constraint_direction_tube[12][leg]] = tube_mu_c3_in_base_x
-        out_constraint_direction[_constraint_direction_tube[13][leg]] = tube_mu_c3_in_base_y
-        out_constraint_direction[_constraint_direction_tube[14][leg]] = tube_mu_c3_in_base_z
+        # (tube-c) leg force on the platform without actuation and without the mass at the connection point
+        out_leg_force[_leg_force_tube[0][leg]] = tube_c_x
+        out_leg_force[_leg_force_tube[1][leg]] = tube_c_y
+        out_leg_force[_leg_force_tube[2][leg]] = tube_c_z
+        # (tube-c_m) moment of the leg on the platform without actuation
+        out_leg_force[_leg_force_tube[3][leg]] = tube_c_m_x
+        out_leg_force[_leg_force_tube[4][leg]] = tube_c_m_y
+        out_leg_force[_leg_force_tube[5][leg]] = tube_c_m_z
+        # (tube-n_c1) unit force that the leg's freedoms leave out
+        out_constraint_direction[_constraint_direction_tube[0][leg]] = axis_y_tube_axes2_x
+        out_constraint_direction[_constraint_direction_tube[1][leg]] = axis_y_tube_axes2_y
+        out_constraint_direction[_constraint_direction_tube[2][leg]] = axis_y_tube_axes2_z
+        # (tube-mu_c1) the moment that goes with it
+        out_constraint_direction[_constraint_direction_tube[3][leg]] = tube_mu_c1_x
+        out_constraint_direction[_constraint_direction_tube[4][leg]] = tube_mu_c1_y
+        out_constraint_direction[_constraint_direction_tube[5][leg]] = tube_mu_c1_z
+        # (tube-n_c2) unit force that the leg's freedoms leave out
+        out_constraint_direction[_constraint_direction_tube[6][leg]] = axis_z_tube_axes2_x
+        out_constraint_direction[_constraint_direction_tube[7][leg]] = axis_z_tube_axes2_y
+        out_constraint_direction[_constraint_direction_tube[8][leg]] = axis_z_tube_axes2_z
+        # (tube-mu_c2) the moment that goes with it
+        out_constraint_direction[_constraint_direction_tube[9][leg]] = tube_mu_c2_x
+        out_constraint_direction[_constraint_direction_tube[10][leg]] = tube_mu_c2_y
+        out_constraint_direction[_constraint_direction_tube[11][leg]] = tube_mu_c2_z
+        # (tube-mu_c3) the moment that goes with it
+        out_constraint_direction[_constraint_direction_tube[12][leg]] = tube_mu_c3_x
+        out_constraint_direction[_constraint_direction_tube[13][leg]] = tube_mu_c3_y
+        out_constraint_direction[_constraint_direction_tube[14][leg]] = tube_mu_c3_z
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -10072,7 +10670,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, m_star,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -10112,20 +10713,21 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + m_star*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+        ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
-            ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
-            ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = (
@@ -10152,53 +10754,56 @@ def _run_potential(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = -inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (potential) potential energy
-        ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1
-        ups_potential_t = (
-        (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y + ups_h_3_y +
-            ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) + (ups_g_r0_z*ups_s_2 -
-            ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x + ups_link2_mass*(ups_b_r0_z*ups_s_2 -
-            ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2)*(ups_h_2_z +
-            ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 - ups_b_r1_y*ups_s_2))
+        ups_potential_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_potential_t_5 = ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1
+        ups_potential_t_6 = (
+        (ups_acc_3_t_3*ups_c_2 - ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_c_2*ups_potential_t_3 -
+            ups_potential_t_5*ups_s_2)) - (ups_acc_3_t*ups_c_1 +
+            ups_acc_3_t_2*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1)) -
+            (ups_acc_3_t_3*ups_s_2 + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
+            ups_potential_t_3*ups_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 1.9124953849))
         )
         sums = m.added(sums, leg, (
-        ups_potential_t,
+        ups_potential_t_6,
         ))
-    total_ups, = sums
+    potential_ups, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
-        tube_b_r0_x, tube_b_r0_y, tube_b_r0_z, tube_base_frame_xx, tube_base_frame_xy,
+        tube_acc_3_t, tube_acc_3_t_2, tube_acc_3_t_3, tube_base_frame_xx, tube_base_frame_xy,
             tube_base_frame_xz, tube_base_frame_yx, tube_base_frame_yy, tube_base_frame_yz,
             tube_base_frame_zx, tube_base_frame_zy, tube_base_frame_zz, tube_base_point_x,
-            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2, tube_g_r0_x,
-            tube_g_r0_y, tube_g_r0_z, tube_h_2_x, tube_h_2_y, tube_h_2_z, tube_h_3_x, tube_h_3_y,
-            tube_h_3_z, tube_link2_mass, tube_link3_mass, tube_platform_point_x,
-            tube_platform_point_y, tube_platform_point_z,
+            tube_base_point_y, tube_base_point_z, tube_branch_1, tube_branch_2,
+            tube_h_2_in_spec2_x, tube_h_2_in_spec2_y, tube_h_2_in_spec2_z, tube_h_3_in_spec2_x,
+            tube_h_3_in_spec2_y, tube_h_3_in_spec2_z, tube_link2_mass, tube_link3_mass,
+            tube_platform_point_x, tube_platform_point_y, tube_platform_point_z, tube_potential_t,
+            tube_potential_t_2, tube_potential_t_3,
         ) = k
         # (tube-S) from the base point to the connection point
         tube_S_x = (
@@ -10225,49 +10830,51 @@ def _run_potential(m, X):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_g_r1_y = -tube_c_1*tube_g_r0_y - tube_g_r0_x*tube_s_1
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
         # (potential) potential energy
-        tube_b_r1_x = tube_b_r0_y*tube_s_1 - tube_b_r0_x*tube_c_1
-        tube_b_r1_y = -tube_b_r0_x*tube_s_1 - tube_b_r0_y*tube_c_1
-        tube_b_r3_x = tube_b_r0_z*tube_s_2 - tube_b_r1_y*tube_c_2
-        tube_b_r3_y = -tube_b_r0_z*tube_c_2 - tube_b_r1_y*tube_s_2
-        tube_potential_t = (
-        (tube_g_r0_y*tube_s_1 - tube_c_1*tube_g_r0_x)*(tube_h_2_y + tube_h_3_y +
-            tube_b_r1_x*tube_link2_mass + tube_b_r1_x*tube_link3_mass) + (tube_g_r0_z*tube_s_2 -
-            tube_c_2*tube_g_r1_y)*(tube_h_2_x + tube_h_3_x + tube_b_r3_x*tube_link2_mass +
-            tube_link3_mass*(tube_b_r3_x + tube_root_2)) - (-tube_c_2*tube_g_r0_z -
-            tube_g_r1_y*tube_s_2)*(tube_h_2_z + tube_h_3_z - tube_b_r3_y*tube_link2_mass -
-            tube_b_r3_y*tube_link3_mass)
+        tube_potential_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_b_in_spec2_y = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1
+        tube_potential_t_5 = tube_c_1*tube_potential_t_2 - tube_potential_t*tube_s_1
+        tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 + tube_potential_t_3*tube_s_2
+        tube_b_in_spec2_z = tube_potential_t_5*tube_s_2 - tube_c_2*tube_potential_t_3
+        tube_potential_t_6 = (
+        (tube_acc_3_t_3*tube_c_2 - tube_potential_t_4*tube_s_2)*(tube_h_2_in_spec2_z +
+            tube_h_3_in_spec2_z + tube_b_in_spec2_z*tube_link2_mass +
+            tube_b_in_spec2_z*tube_link3_mass) - (tube_acc_3_t*tube_c_1 +
+            tube_acc_3_t_2*tube_s_1)*(tube_h_2_in_spec2_y + tube_h_3_in_spec2_y +
+            tube_b_in_spec2_y*tube_link2_mass + tube_b_in_spec2_y*tube_link3_mass) -
+            (tube_acc_3_t_3*tube_s_2 + tube_c_2*tube_potential_t_4)*(tube_h_2_in_spec2_x +
+            tube_h_3_in_spec2_x + tube_b_in_spec2_x*tube_link2_mass +
+            tube_link3_mass*(tube_b_in_spec2_x + tube_root_2))
         )
         ok = (
         ok & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
             (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002))
         )
         sums = m.added(sums, leg, (
-        tube_potential_t,
+        tube_potential_t_6,
         ))
-    total_tube, = sums
+    potential_tube, = sums
     # (potential) potential energy
-    potential = -potential_t - total_tube - total_ups
+    potential = potential_tube + potential_ups - potential_t
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -10277,7 +10884,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -10321,6 +10928,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = 1.374771449614444
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -10331,18 +10939,18 @@ def _run_condition(m, X):
             ups_branch_2, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
-        ups_q_in_base_x = (
+        ups_q_x = (
         R_xx*ups_platform_point_x + R_xy*ups_platform_point_y + R_xz*ups_platform_point_z
         )
-        ups_q_in_base_y = (
+        ups_q_y = (
         R_yx*ups_platform_point_x + R_yy*ups_platform_point_y + R_yz*ups_platform_point_z
         )
-        ups_q_in_base_z = (
+        ups_q_z = (
         R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z
         )
-        ups_S_x = t_x + ups_q_in_base_x - ups_base_point_x
-        ups_S_y = t_y + ups_q_in_base_y - ups_base_point_y
-        ups_S_z = t_z + ups_q_in_base_z - ups_base_point_z
+        ups_S_x = t_x + ups_q_x - ups_base_point_x
+        ups_S_y = t_y + ups_q_y - ups_base_point_y
+        ups_S_z = t_z + ups_q_z - ups_base_point_z
         # (ups-px_1) component along the reference direction
         ups_px_1 = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
@@ -10356,42 +10964,39 @@ def _run_condition(m, X):
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-H_a_3) moment of the column's unit force about the platform origin
-        ups_H_a_3_x = ups_axis_x_z*ups_q_in_base_y - ups_axis_x_y*ups_q_in_base_z
-        ups_H_a_3_y = ups_axis_x_x*ups_q_in_base_z - ups_axis_x_z*ups_q_in_base_x
-        ups_H_a_3_z = ups_axis_x_y*ups_q_in_base_x - ups_axis_x_x*ups_q_in_base_y
-        # (spread) rms distance of the platform points from their centroid
-        ups_spread_t = b_c_x - ups_platform_point_x
-        ups_spread_t_2 = b_c_y - ups_platform_point_y
-        ups_spread_t_3 = b_c_z - ups_platform_point_z
-        ups_spread_t_4 = (
-        ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
-        )
-        # (ups-rho2_1) squared amplitude
+        # (ups-w_2) reciprocal vector 2
+        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
+        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
+        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         ups_pivot_size = abs(ups_rho2_1)
-        # (ups-rho2_2) squared amplitude
         ups_pivot_size_2 = abs(ups_rho2_2)
-        # (ups-w_1) reciprocal vector 1
         ups_pivot_size_3 = abs(ups_root_1)
         ups_pivot_size_4 = abs(ups_root_2)
-        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         ups_least_pivots = (
         least(least(least(0.7231023985306559*sqrt(ups_pivot_size),
             0.7231023985306559*sqrt(ups_pivot_size_2)), 0.7231023985306559*ups_pivot_size_3),
             0.7231023985306559*ups_pivot_size_4)
+        )
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
+        ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y
+        ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
+        ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
+        # (spread) rms distance of the platform points from their centroid
+        ups_spread_t = b_c_in_platform_x - ups_platform_point_x
+        ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y
+        ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z
+        ups_spread_t_4 = (
+        ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
         clear & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) &
@@ -10401,14 +11006,17 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         ups_spread_t_4,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = ups_w_3_x
+        out_H[_H_ups[1][leg]] = ups_w_3_y
+        out_H[_H_ups[2][leg]] = ups_w_3_z
+        # (ups-H_a_3) moment of the column's unit force about the platform origin
         out_H[_H_ups[3][leg]] = ups_H_a_3_x
         out_H[_H_ups[4][leg]] = ups_H_a_3_y
         out_H[_H_ups[5][leg]] = ups_H_a_3_z
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_ups[0][leg]] = ups_least_pivots
-    total_ups, = sums
+    spread_ups, = sums
     sums = [0.0] * 1
     for leg, k in legs[1]:
         (
@@ -10423,18 +11031,18 @@ def _run_condition(m, X):
             tube_platform_point_x, tube_platform_point_y, tube_platform_point_z,
         ) = k
         # (tube-S) from the base point to the connection point
-        tube_q_in_base_x = (
+        tube_q_x = (
         R_xx*tube_platform_point_x + R_xy*tube_platform_point_y + R_xz*tube_platform_point_z
         )
-        tube_q_in_base_y = (
+        tube_q_y = (
         R_yx*tube_platform_point_x + R_yy*tube_platform_point_y + R_yz*tube_platform_point_z
         )
-        tube_q_in_base_z = (
+        tube_q_z = (
         R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
         )
-        tube_S_x = t_x + tube_q_in_base_x - tube_base_point_x
-        tube_S_y = t_y + tube_q_in_base_y - tube_base_point_y
-        tube_S_z = t_z + tube_q_in_base_z - tube_base_point_z
+        tube_S_x = t_x + tube_q_x - tube_base_point_x
+        tube_S_y = t_y + tube_q_y - tube_base_point_y
+        tube_S_z = t_z + tube_q_z - tube_base_point_z
         # (tube-px_1) component along the reference direction
         tube_px_1 = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
@@ -10447,54 +11055,24 @@ def _run_condition(m, X):
         tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
         # (tube-root_1) amplitude, with the sign of the branch
         tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = -inv_tube_root_1*tube_py_1
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_px_1
         # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_t = (
+        tube_xi_1_in_axes1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
         # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_t*tube_xi_1_t
+        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
         # (tube-root_2) amplitude, with the sign of the branch
         tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
         inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = inv_tube_root_2*tube_root_1
+        tube_c_2 = -inv_tube_root_2*tube_root_1
         # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_t
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        axis_z_tube_axes2_in_base_x = tube_base_frame_xy*tube_s_1 - tube_base_frame_xx*tube_c_1
-        axis_z_tube_axes2_in_base_y = tube_base_frame_yy*tube_s_1 - tube_base_frame_yx*tube_c_1
-        axis_z_tube_axes2_in_base_z = tube_base_frame_zy*tube_s_1 - tube_base_frame_zx*tube_c_1
-        tube_f_c1_t = tube_s_1*tube_s_2
-        tube_f_c1_t_2 = tube_c_1*tube_s_2
-        axis_y_tube_axes2_in_base_x = (
-        tube_base_frame_xx*tube_f_c1_t + tube_base_frame_xy*tube_f_c1_t_2 -
-            tube_base_frame_xz*tube_c_2
-        )
-        axis_y_tube_axes2_in_base_y = (
-        tube_base_frame_yx*tube_f_c1_t + tube_base_frame_yy*tube_f_c1_t_2 -
-            tube_base_frame_yz*tube_c_2
-        )
-        axis_y_tube_axes2_in_base_z = (
-        tube_base_frame_zx*tube_f_c1_t + tube_base_frame_zy*tube_f_c1_t_2 -
-            tube_base_frame_zz*tube_c_2
-        )
-        axis_x_tube_axes2_x = (
-        axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_z -
-            axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_y
-        )
-        axis_x_tube_axes2_y = (
-        axis_y_tube_axes2_in_base_z*axis_z_tube_axes2_in_base_x -
-            axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_z
-        )
-        axis_x_tube_axes2_z = (
-        axis_y_tube_axes2_in_base_x*axis_z_tube_axes2_in_base_y -
-            axis_y_tube_axes2_in_base_y*axis_z_tube_axes2_in_base_x
-        )
+        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
@@ -10521,99 +11099,158 @@ def _run_condition(m, X):
         tube_n_m1_t_9 = (
         R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz + R_zz*tube_base_frame_zz
         )
-        tube_end_p1_r0_x = (
+        tube_n_m1_t_10 = (
         tube_n_m1_t*tube_platform_joint_rotation_yx +
             tube_n_m1_t_2*tube_platform_joint_rotation_yy +
             tube_n_m1_t_3*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r0_y = (
+        tube_n_m1_t_11 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_yx +
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_r1_x = tube_end_p1_r0_y*tube_s_1 - tube_c_1*tube_end_p1_r0_x
-        tube_end_p1_r3_y = (
-        -tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_in_axes2_z = (
+        tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) - tube_s_2*(-tube_c_1*tube_end_p1_r0_y
-            - tube_end_p1_r0_x*tube_s_1)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
+            tube_c_1*tube_n_m1_t_11)
         )
+        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_end_p2_r0_z = (
+        tube_n_m2_t = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_end_p2_r1_y = (
-        -tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz) -
-            tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_n_m2_t_2 = (
+        tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz)
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
+            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            tube_n_m1_t_6*tube_platform_joint_rotation_zz)
         )
-        tube_end_p2_r3_x = tube_end_p2_r0_z*tube_s_2 - tube_c_2*tube_end_p2_r1_y
-        tube_end_p2_r3_y = -tube_c_2*tube_end_p2_r0_z - tube_end_p2_r1_y*tube_s_2
+        tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2
+        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2
+        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_end_p3_r0_x = (
+        tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
             tube_n_m1_t_2*tube_platform_joint_rotation_xy +
             tube_n_m1_t_3*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r0_y = (
+        tube_n_m3_t_2 = (
         tube_n_m1_t_4*tube_platform_joint_rotation_xx +
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_r1_x = tube_end_p3_r0_y*tube_s_1 - tube_c_1*tube_end_p3_r0_x
-        tube_end_p3_r3_x = (
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_in_axes2_z = (
         tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(-tube_c_1*tube_end_p3_r0_y
-            - tube_end_p3_r0_x*tube_s_1)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
+            tube_c_1*tube_n_m3_t_2)
         )
-        # (tube-n_m1) direction 1 of the moment that the platform joint transmits
-        tube_n_m1_t_10 = tube_c_2*tube_end_p1_r1_x
-        # (tube-n_m2) direction 2 of the moment that the platform joint transmits
-        tube_n_m2_r0_y = -tube_c_2*tube_end_p2_r3_x - tube_end_p2_r3_y*tube_s_2
-        # (tube-n_m3) direction 3 of the moment that the platform joint transmits
-        tube_n_m3_t = tube_end_p3_r1_x*tube_s_2
+        tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
         # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_f_c1_t_3 = tube_end_p1_r3_y*tube_n_m3_t + tube_end_p3_r3_x*tube_n_m1_t_10
-        inv_tube_f_c1_t_26 = 1.0/tube_f_c1_t_3
-        tube_f_c1_t_4 = inv_tube_f_c1_t_26*tube_n_m3_t*tube_root_2
-        tube_f_c1_t_5 = inv_tube_f_c1_t_26*tube_n_m1_t_10*tube_root_2
-        # (tube-f_c2) force part of the wrench that does no work along the leg's freedoms, 2
-        tube_f_c2_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_root_1
-        tube_f_c2_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_root_1
-        # (tube-f_c3) force part of the wrench that does no work along the leg's freedoms, 3
-        tube_f_c3_t = inv_tube_f_c1_t_26*tube_end_p3_r3_x*tube_n_m2_r0_y
-        tube_f_c3_t_2 = inv_tube_f_c1_t_26*tube_end_p1_r3_y*tube_n_m2_r0_y
+        tube_f_c1_t = (
+        tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
+        )
+        # (tube-m1_c1) moment part 1 of the wrench that does no work along the leg's freedoms, 1
+        inv_tube_f_c1_t = 1.0/tube_f_c1_t
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
+        # (tube-m3_c1) moment part 3 of the wrench that does no work along the leg's freedoms, 1
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        # (tube-m1_c2) moment part 1 of the wrench that does no work along the leg's freedoms, 2
+        tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
+        # (tube-m3_c2) moment part 3 of the wrench that does no work along the leg's freedoms, 2
+        tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
+        # (tube-m1_c3) moment part 1 of the wrench that does no work along the leg's freedoms, 3
+        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        # (tube-m3_c3) moment part 3 of the wrench that does no work along the leg's freedoms, 3
+        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        # (tube-n_c1) unit force that the leg's freedoms leave out
+        tube_n_c1_t = tube_s_1*tube_s_2
+        tube_n_c1_t_2 = tube_c_1*tube_s_2
+        tube_n_c1_x = (
+        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
+            tube_base_frame_xy*tube_n_c1_t_2
+        )
+        tube_n_c1_y = (
+        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
+            tube_base_frame_yy*tube_n_c1_t_2
+        )
+        tube_n_c1_z = (
+        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
+            tube_base_frame_zy*tube_n_c1_t_2
+        )
+        # (tube-mu_c1) the moment that goes with it
+        tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
+        tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
+        tube_mu_c1_in_axes2_z = (
+        -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
+        )
+        # (tube-n_c2) unit force that the leg's freedoms leave out
+        tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
+        tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
+        tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        # (tube-mu_c2) the moment that goes with it
+        tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
+        tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
+        tube_mu_c2_in_axes2_z = (
+        tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
+        )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_f_c3_t*tube_f_c3_t + tube_f_c3_t_2*tube_f_c3_t_2)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3 = inv_tube_size_c3*tube_f_c3_t
+        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_f_c3_t_2
+        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        # (tube-mu_c3) the moment that goes with it
+        axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y
+        axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z
+        axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x
+        tube_mu_c3_in_axes2_x = (
+        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        )
+        tube_mu_c3_in_axes2_y = (
+        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        )
+        tube_mu_c3_in_axes2_z = (
+        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        )
+        tube_mu_c3_x = (
+        axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_x +
+            tube_mu_c3_in_axes2_z*tube_n_c2_x
+        )
+        tube_mu_c3_y = (
+        axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_y +
+            tube_mu_c3_in_axes2_z*tube_n_c2_y
+        )
+        tube_mu_c3_z = (
+        axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_z +
+            tube_mu_c3_in_axes2_z*tube_n_c2_z
+        )
         # (tube-w_1) force part of reciprocal wrench 1
-        tube_w_1_t = 1.35*tube_n_m1_t_10
-        tube_w_1_t_2 = 1.35*tube_n_m2_r0_y
-        tube_w_1_t_3 = 1.35*tube_n_m3_t
-        tube_w_1_t_4 = 1.35*tube_end_p1_r3_y
-        tube_w_1_t_5 = 1.35*tube_end_p3_r3_x
-        tube_w_1_t_6 = 1.35*tube_f_c1_t_4
-        tube_w_1_t_7 = 1.35*tube_f_c1_t_5
-        tube_w_1_t_8 = 1.35*tube_f_c2_t
-        tube_w_1_t_9 = 1.35*tube_f_c2_t_2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3
+        tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_3 = 1.35*tube_n_m3_t_3
+        tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
+        tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
+        tube_w_1_t_6 = 1.35*tube_m1_c1_t
+        tube_w_1_t_7 = 1.35*tube_m3_c1_t
+        tube_w_1_t_8 = 1.35*tube_m1_c2_t
+        tube_w_1_t_9 = 1.35*tube_m3_c2
+        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
         tube_w_1_t_12 = 1.35*tube_mu3_c3
         tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
-        inv_tube_w_1_t_16 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_16*tube_root_2
-        tube_w_1_t_15 = inv_tube_w_1_t_16*tube_w_1_t_4
-        tube_w_1_t_16 = inv_tube_w_1_t_16*tube_w_1_t_5
+        inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
+        tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
         tube_w_1_t_18 = 1.0 + tube_w_1_t_14*tube_w_1_t_17
         tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6
@@ -10634,10 +11271,10 @@ def _run_condition(m, X):
         sqrt(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19 +
             tube_w_1_t_20*tube_w_1_t_20)
         )
-        inv_tube_w_1_t_57 = 1.0/tube_w_1_t_33
-        tube_w_1_t_34 = inv_tube_w_1_t_57*tube_w_1_t_18
-        tube_w_1_t_35 = inv_tube_w_1_t_57*tube_w_1_t_19
-        tube_w_1_t_36 = inv_tube_w_1_t_57*tube_w_1_t_20
+        inv_tube_w_1_t_33 = 1.0/tube_w_1_t_33
+        tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18
+        tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19
+        tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20
         tube_w_1_t_37 = (
         tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 + tube_w_1_t_24*tube_w_1_t_36
         )
@@ -10660,23 +11297,23 @@ def _run_condition(m, X):
         sqrt(1.0 + tube_w_1_t_38*tube_w_1_t_38 + tube_w_1_t_39*tube_w_1_t_39 +
             tube_w_1_t_40*tube_w_1_t_40)
         )
-        inv_tube_w_1_t_95 = 1.0/tube_w_1_t_49
-        tube_w_1_t_50 = inv_tube_w_1_t_95*tube_w_1_t_38
-        tube_w_1_t_51 = inv_tube_w_1_t_95*tube_w_1_t_39
-        tube_w_1_t_52 = inv_tube_w_1_t_95*tube_w_1_t_40
+        inv_tube_w_1_t_49 = 1.0/tube_w_1_t_49
+        tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38
+        tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39
+        tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40
         tube_w_1_t_53 = (
         tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 - tube_w_1_t_43*tube_w_1_t_51
         )
         tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42
-        tube_w_1_t_55 = inv_tube_w_1_t_95*tube_w_1_t_53
+        tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53
         tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53
         tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44
         tube_w_1_t_58 = (
-        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_95*tube_root_1
+        tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 - inv_tube_w_1_t_49*tube_root_1
             - tube_w_1_t_47*tube_w_1_t_51
         )
         tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46
-        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_95*tube_w_1_t_58
+        tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58
         tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58
         tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48
         tube_w_1_t_63 = (
@@ -10684,12 +11321,12 @@ def _run_condition(m, X):
             tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
             tube_w_1_t_57*tube_w_1_t_57)
         )
-        inv_tube_w_1_t_129 = 1.0/tube_w_1_t_63
-        tube_w_1_t_64 = inv_tube_w_1_t_129*tube_w_1_t_54
-        tube_w_1_t_65 = inv_tube_w_1_t_129*tube_w_1_t_55
-        tube_w_1_t_66 = inv_tube_w_1_t_129*tube_w_1_t_56
-        tube_w_1_t_67 = inv_tube_w_1_t_129*tube_w_1_t_11
-        tube_w_1_t_68 = inv_tube_w_1_t_129*tube_w_1_t_57
+        inv_tube_w_1_t_63 = 1.0/tube_w_1_t_63
+        tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54
+        tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55
+        tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56
+        tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11
+        tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57
         tube_w_1_t_69 = (
         tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 + tube_w_1_t_61*tube_w_1_t_66 +
             tube_w_1_t_62*tube_w_1_t_68 - tube_w_1_t_2*tube_w_1_t_67
@@ -10704,80 +11341,10 @@ def _run_condition(m, X):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        # (tube-mu_c1) the moment that goes with it
-        tube_mu_c1_t = tube_end_p1_r1_x*tube_f_c1_t_4
-        tube_mu_c1_t_2 = tube_end_p3_r1_x*tube_f_c1_t_5
-        tube_mu_c1_z = -tube_end_p1_r3_y*tube_f_c1_t_4 - tube_end_p3_r3_x*tube_f_c1_t_5
-        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
-        tube_Hk_a_1_x = (
-        axis_x_tube_axes2_x*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_mu_c1_t +
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_y*tube_q_in_base_z
-        )
-        tube_Hk_a_1_y = (
-        axis_x_tube_axes2_y*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_y_tube_axes2_in_base_y*tube_mu_c1_t + axis_z_tube_axes2_in_base_y*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_z*tube_q_in_base_x
-        )
-        tube_Hk_a_1_z = (
-        axis_x_tube_axes2_z*tube_mu_c1_t_2 + axis_y_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_y_tube_axes2_in_base_z*tube_mu_c1_t + axis_z_tube_axes2_in_base_z*tube_mu_c1_z -
-            axis_y_tube_axes2_in_base_x*tube_q_in_base_y
-        )
-        # (tube-mu_c2) the moment that goes with it
-        tube_mu_c2_t = tube_end_p1_r1_x*tube_f_c2_t
-        tube_mu_c2_t_2 = tube_end_p3_r1_x*tube_f_c2_t_2
-        tube_mu_c2_z = tube_end_p3_r3_x*tube_f_c2_t_2 - tube_end_p1_r3_y*tube_f_c2_t
-        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
-        tube_Hk_a_2_x = (
-        axis_y_tube_axes2_in_base_x*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_mu_c2_z +
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_y - axis_x_tube_axes2_x*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_y*tube_q_in_base_z
-        )
-        tube_Hk_a_2_y = (
-        axis_y_tube_axes2_in_base_y*tube_mu_c2_t + axis_z_tube_axes2_in_base_x*tube_q_in_base_z +
-            axis_z_tube_axes2_in_base_y*tube_mu_c2_z - axis_x_tube_axes2_y*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_z*tube_q_in_base_x
-        )
-        tube_Hk_a_2_z = (
-        axis_y_tube_axes2_in_base_z*tube_mu_c2_t + axis_z_tube_axes2_in_base_y*tube_q_in_base_x +
-            axis_z_tube_axes2_in_base_z*tube_mu_c2_z - axis_x_tube_axes2_z*tube_mu_c2_t_2 -
-            axis_z_tube_axes2_in_base_x*tube_q_in_base_y
-        )
-        # (tube-mu_c3) the moment that goes with it
-        tube_mu_c3_x = -inv_tube_size_c3*tube_end_p2_r3_y - tube_end_p3_r1_x*tube_mu3_c3
-        tube_mu_c3_y = inv_tube_size_c3*tube_end_p2_r3_x + tube_end_p1_r1_x*tube_mu1_c3
-        tube_mu_c3_z = tube_end_p3_r3_x*tube_mu3_c3 - tube_end_p1_r3_y*tube_mu1_c3
-        tube_mu_c3_in_base_x = (
-        axis_x_tube_axes2_x*tube_mu_c3_x + axis_y_tube_axes2_in_base_x*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_x*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_y = (
-        axis_x_tube_axes2_y*tube_mu_c3_x + axis_y_tube_axes2_in_base_y*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_y*tube_mu_c3_z
-        )
-        tube_mu_c3_in_base_z = (
-        axis_x_tube_axes2_z*tube_mu_c3_x + axis_y_tube_axes2_in_base_z*tube_mu_c3_y +
-            axis_z_tube_axes2_in_base_z*tube_mu_c3_z
-        )
-        # (spread) rms distance of the platform points from their centroid
-        tube_spread_t = b_c_x - tube_platform_point_x
-        tube_spread_t_2 = b_c_y - tube_platform_point_y
-        tube_spread_t_3 = b_c_z - tube_platform_point_z
-        tube_spread_t_4 = (
-        tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2 +
-            tube_spread_t_3*tube_spread_t_3
-        )
-        # (tube-rho2_1) squared amplitude
         tube_pivot_size = abs(tube_rho2_1)
-        # (tube-rho2_2) squared amplitude
         tube_pivot_size_2 = abs(tube_rho2_2)
-        # (tube-f_c1) force part of the wrench that does no work along the leg's freedoms, 1
-        tube_pivot_size_3 = abs(tube_f_c1_t_3)
-        # (tube-size_c3) size of the moment
+        tube_pivot_size_3 = abs(tube_f_c1_t)
         tube_pivot_size_4 = abs(tube_size_c3)
-        # (tube-w_1) force part of reciprocal wrench 1
         tube_pivot_size_5 = abs(tube_w_1_t_13)
         tube_pivot_size_6 = abs(tube_w_1_t_33)
         tube_pivot_size_7 = abs(tube_w_1_t_49)
@@ -10789,36 +11356,77 @@ def _run_condition(m, X):
             0.7407407407407407*tube_pivot_size_5), tube_pivot_size_6), tube_pivot_size_7),
             0.7407407407407407*tube_pivot_size_8), 0.7407407407407407*tube_pivot_size_9)
         )
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
+        tube_Hk_a_1_x = (
+        axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_x +
+            tube_mu_c1_in_axes2_z*tube_n_c2_x + tube_n_c1_z*tube_q_y - tube_n_c1_y*tube_q_z
+        )
+        tube_Hk_a_1_y = (
+        axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_y +
+            tube_mu_c1_in_axes2_z*tube_n_c2_y + tube_n_c1_x*tube_q_z - tube_n_c1_z*tube_q_x
+        )
+        tube_Hk_a_1_z = (
+        axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x + tube_mu_c1_in_axes2_y*tube_n_c1_z +
+            tube_mu_c1_in_axes2_z*tube_n_c2_z + tube_n_c1_y*tube_q_x - tube_n_c1_x*tube_q_y
+        )
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
+        tube_Hk_a_2_x = (
+        tube_mu_c2_in_axes2_y*tube_n_c1_x + tube_mu_c2_in_axes2_z*tube_n_c2_x +
+            tube_n_c2_z*tube_q_y - axis_x_tube_axes2_x*tube_mu_c2_t - tube_n_c2_y*tube_q_z
+        )
+        tube_Hk_a_2_y = (
+        tube_mu_c2_in_axes2_y*tube_n_c1_y + tube_mu_c2_in_axes2_z*tube_n_c2_y +
+            tube_n_c2_x*tube_q_z - axis_x_tube_axes2_y*tube_mu_c2_t - tube_n_c2_z*tube_q_x
+        )
+        tube_Hk_a_2_z = (
+        tube_mu_c2_in_axes2_y*tube_n_c1_z + tube_mu_c2_in_axes2_z*tube_n_c2_z +
+            tube_n_c2_y*tube_q_x - axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y
+        )
+        # (spread) rms distance of the platform points from their centroid
+        tube_spread_t = b_c_in_platform_x - tube_platform_point_x
+        tube_spread_t_2 = b_c_in_platform_y - tube_platform_point_y
+        tube_spread_t_3 = b_c_in_platform_z - tube_platform_point_z
+        tube_spread_t_4 = (
+        tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2 +
+            tube_spread_t_3*tube_spread_t_3
+        )
         clear = (
         clear & m.every(leg, (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_f_c1_t_3) > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_13) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) &
-            (abs(tube_w_1_t_49) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) &
-            (abs(tube_w_1_t_75) > _TOLERANCE * 1.35))
+            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
+            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35))
         )
         sums = m.added(sums, leg, (
         tube_spread_t_4,
         ))
-        out_Hk[_Hk_tube[0][leg]] = axis_y_tube_axes2_in_base_x
-        out_Hk[_Hk_tube[1][leg]] = axis_y_tube_axes2_in_base_y
-        out_Hk[_Hk_tube[2][leg]] = axis_y_tube_axes2_in_base_z
+        # (tube-n_c1) unit force that the leg's freedoms leave out
+        out_Hk[_Hk_tube[0][leg]] = tube_n_c1_x
+        out_Hk[_Hk_tube[1][leg]] = tube_n_c1_y
+        out_Hk[_Hk_tube[2][leg]] = tube_n_c1_z
+        # (tube-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[3][leg]] = tube_Hk_a_1_x
         out_Hk[_Hk_tube[4][leg]] = tube_Hk_a_1_y
         out_Hk[_Hk_tube[5][leg]] = tube_Hk_a_1_z
-        out_Hk[_Hk_tube[6][leg]] = axis_z_tube_axes2_in_base_x
-        out_Hk[_Hk_tube[7][leg]] = axis_z_tube_axes2_in_base_y
-        out_Hk[_Hk_tube[8][leg]] = axis_z_tube_axes2_in_base_z
+        # (tube-n_c2) unit force that the leg's freedoms leave out
+        out_Hk[_Hk_tube[6][leg]] = tube_n_c2_x
+        out_Hk[_Hk_tube[7][leg]] = tube_n_c2_y
+        out_Hk[_Hk_tube[8][leg]] = tube_n_c2_z
+        # (tube-Hk_a_2) moment of the column's unit force about the platform origin
         out_Hk[_Hk_tube[9][leg]] = tube_Hk_a_2_x
         out_Hk[_Hk_tube[10][leg]] = tube_Hk_a_2_y
         out_Hk[_Hk_tube[11][leg]] = tube_Hk_a_2_z
-        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_in_base_x
-        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_in_base_y
-        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_in_base_z
+        # (tube-Hk_a_3) moment of the column's unit force about the platform origin
+        out_Hk[_Hk_tube[12][leg]] = tube_mu_c3_x
+        out_Hk[_Hk_tube[13][leg]] = tube_mu_c3_y
+        out_Hk[_Hk_tube[14][leg]] = tube_mu_c3_z
+        # (tube-w_1) force part of reciprocal wrench 1
         out_pivots[_pivots_tube[0][leg]] = tube_least_pivots
-    total_tube, = sums
+    spread_tube, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = sqrt(0.25*total_tube + 0.25*total_ups)
+    spread = sqrt(0.25*spread_tube + 0.25*spread_ups)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 

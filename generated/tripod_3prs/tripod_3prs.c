@@ -487,10 +487,10 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_prs_x = 0;
-    real total_prs_y = 0;
-    real total_prs_z = 0;
-    real total_prs = 0;
+    real b_c_prs_in_platform_x = 0;
+    real b_c_prs_in_platform_y = 0;
+    real b_c_prs_in_platform_z = 0;
+    real legs_size_prs = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -505,26 +505,29 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = platform_centre_of_mass_x*platform_mass;
-    const real h_star_y = platform_centre_of_mass_y*platform_mass;
-    const real h_star_z = platform_centre_of_mass_z*platform_mass;
+    const real h_star_in_platform_x = platform_centre_of_mass_x*platform_mass;
+    const real h_star_in_platform_y = platform_centre_of_mass_y*platform_mass;
+    const real h_star_in_platform_z = platform_centre_of_mass_z*platform_mass;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
     const real J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3;
-    const real J_star_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4);
-    const real J_star_xy = platform_inertia_xy -
+    const real J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t -
+        J_star_t_4);
+    const real J_star_in_platform_xy = platform_inertia_xy -
         platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass;
-    const real J_star_xz = platform_inertia_xz -
+    const real J_star_in_platform_xz = platform_inertia_xz -
         platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass;
-    const real J_star_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4);
-    const real J_star_yz = platform_inertia_yz -
+    const real J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 -
+        J_star_t_4);
+    const real J_star_in_platform_yz = platform_inertia_yz -
         platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
-    const real J_star_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4);
-    const real J_star_t_5 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 -
+        J_star_t_4);
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_6 = R(0.5)*J_star_t_5;
-    const real J_star_t_7 = J_star_xx - J_star_zz;
+    const real J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_8 = R(0.5)*J_star_t_7;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*platform_mass;
@@ -532,23 +535,23 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real Z_p_t_3 = gravity_z*platform_mass;
     /* (spread) rms distance of the platform points from their centroid */
     const real spread_t = R(0.3333333333333333)*root(3);
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_6 = J_star_t_6;
     model->J_star_t_8 = J_star_t_8;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->platform_mass = platform_mass;
     model->spread_t = spread_t;
     for (size_t leg = 0; leg < 4; ++leg) {
@@ -580,54 +583,54 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         const real prs_link2_inertia_zz = params->prs_link2_inertia[own][2][2];
         static const signed char signs_prs_branch_1[] = {-1, -1, -1};
         const real prs_branch_1 = signs_prs_branch_1[own];
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x;
         /* (prs-size) length of the leg's lever arms, the measure of what is near singular */
-        const real prs_size_t = R(3.5999999999999994e-07) + prs_disc_1_t;
-        const real prs_size = root(prs_size_t);
-        /* (prs-root_2) amplitude: off the manifold the nearest angle is taken */
-        const real prs_root_2_t = prs_size*prs_size*prs_size_t;
+        const real prs_size_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x;
+        const real prs_size_t_2 = R(3.5999999999999994e-07) + prs_size_t;
+        const real prs_size = root(prs_size_t_2);
+        /* (prs-h_1) first moment of link 1 about the origin of link 1 */
+        const real prs_h_1_in_spec0_x = prs_link1_centre_of_mass_x*prs_link1_mass;
+        const real prs_h_1_in_spec0_y = prs_link1_centre_of_mass_y*prs_link1_mass;
+        /* (prs-h_2) first moment of link 2 about the origin of link 2 */
+        const real prs_h_2_in_spec2_x = prs_link2_centre_of_mass_x*prs_link2_mass;
+        const real prs_h_2_in_spec2_y = prs_link2_centre_of_mass_y*prs_link2_mass;
         /* (prs-J_2) inertia tensor of link 2 about the origin of link 2 */
         const real prs_J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z;
         const real prs_J_2_t_2 = prs_J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x
             + prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y;
-        const real prs_J_2_zz = prs_link2_inertia_zz - prs_link2_mass*(prs_J_2_t - prs_J_2_t_2);
-        /* (prs-h_2) first moment of link 2 about the origin of link 2 */
-        const real prs_h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass;
-        const real prs_h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass;
-        /* (prs-P_c_1) force that accelerates joint 1, per unit */
-        const real prs_P_c_1_t = prs_link1_mass + prs_link2_mass;
-        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prs_g_r0_x = gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx +
-            gravity_z*prs_base_frame_zx;
-        const real prs_g_r0_y = gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy +
-            gravity_z*prs_base_frame_zy;
-        /* (prs-h_1) first moment of link 1 about the origin of link 1 */
-        const real prs_h_1_x = prs_link1_centre_of_mass_x*prs_link1_mass;
-        const real prs_h_1_y = prs_link1_centre_of_mass_y*prs_link1_mass;
-        /* (potential) potential energy */
-        const real prs_b_r0_x = prs_base_frame_xx*prs_base_point_x +
-            prs_base_frame_yx*prs_base_point_y + prs_base_frame_zx*prs_base_point_z;
-        const real prs_b_r0_y = prs_base_frame_xy*prs_base_point_x +
-            prs_base_frame_yy*prs_base_point_y + prs_base_frame_zy*prs_base_point_z;
-        const real prs_b_r0_z = prs_base_frame_xz*prs_base_point_x +
-            prs_base_frame_yz*prs_base_point_y + prs_base_frame_zz*prs_base_point_z;
-        const real prs_potential_t = prs_b_r0_y*prs_link1_mass;
-        const real prs_potential_t_2 = prs_b_r0_y*prs_link2_mass;
-        const real prs_potential_t_3 = (gravity_x*prs_base_frame_xz + gravity_y*prs_base_frame_yz
-            + gravity_z*prs_base_frame_zz)*(prs_b_r0_z*prs_link1_mass + prs_b_r0_z*prs_link2_mass
-            + prs_link1_centre_of_mass_z*prs_link1_mass +
-            prs_link2_centre_of_mass_z*prs_link2_mass);
+        const real prs_J_2_in_spec2_zz = prs_link2_inertia_zz - prs_link2_mass*(prs_J_2_t -
+            prs_J_2_t_2);
         /* (prs-root_2) amplitude: off the manifold the nearest angle is taken */
-        const real inv_prs_root_2_t_2 = 1/prs_root_2_t;
-        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_root_2_t = prs_size*prs_size*prs_size_t_2;
+        /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prs_g_in_axes0_x = gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx +
+            gravity_z*prs_base_frame_zx;
+        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prs_g_in_axes0_y = gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy +
+            gravity_z*prs_base_frame_zy;
+        /* (prs-P_c_1) force that accelerates joint 1, per unit */
+        const real prs_P_c_1_in_axes0_x = prs_link1_mass + prs_link2_mass;
+        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real inv_prs_root_2_t = 1/prs_root_2_t;
         const real inv_prs_size = 1/prs_size;
-        model->inv_prs_root_2_t_2[leg] = inv_prs_root_2_t_2;
+        /* (potential) potential energy */
+        const real prs_b_in_axes0_x = prs_base_frame_xx*prs_base_point_x +
+            prs_base_frame_yx*prs_base_point_y + prs_base_frame_zx*prs_base_point_z;
+        const real prs_b_in_axes0_y = prs_base_frame_xy*prs_base_point_x +
+            prs_base_frame_yy*prs_base_point_y + prs_base_frame_zy*prs_base_point_z;
+        const real prs_b_in_axes0_z = prs_base_frame_xz*prs_base_point_x +
+            prs_base_frame_yz*prs_base_point_y + prs_base_frame_zz*prs_base_point_z;
+        const real prs_potential_t = prs_b_in_axes0_y*prs_link1_mass;
+        const real prs_potential_t_2 = prs_b_in_axes0_y*prs_link2_mass;
+        const real prs_potential_t_3 = (gravity_x*prs_base_frame_xz + gravity_y*prs_base_frame_yz
+            + gravity_z*prs_base_frame_zz)*(prs_b_in_axes0_z*prs_link1_mass +
+            prs_b_in_axes0_z*prs_link2_mass + prs_link1_centre_of_mass_z*prs_link1_mass +
+            prs_link2_centre_of_mass_z*prs_link2_mass);
+        model->inv_prs_root_2_t[leg] = inv_prs_root_2_t;
         model->inv_prs_size[leg] = inv_prs_size;
-        model->prs_J_2_zz[leg] = prs_J_2_zz;
-        model->prs_P_c_1_t[leg] = prs_P_c_1_t;
-        model->prs_b_r0_x[leg] = prs_b_r0_x;
+        model->prs_J_2_in_spec2_zz[leg] = prs_J_2_in_spec2_zz;
+        model->prs_P_c_1_in_axes0_x[leg] = prs_P_c_1_in_axes0_x;
+        model->prs_b_in_axes0_x[leg] = prs_b_in_axes0_x;
         model->prs_base_frame_xx[leg] = prs_base_frame_xx;
         model->prs_base_frame_xy[leg] = prs_base_frame_xy;
         model->prs_base_frame_xz[leg] = prs_base_frame_xz;
@@ -641,13 +644,12 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         model->prs_base_point_y[leg] = prs_base_point_y;
         model->prs_base_point_z[leg] = prs_base_point_z;
         model->prs_branch_1[leg] = prs_branch_1;
-        model->prs_disc_1_t[leg] = prs_disc_1_t;
-        model->prs_g_r0_x[leg] = prs_g_r0_x;
-        model->prs_g_r0_y[leg] = prs_g_r0_y;
-        model->prs_h_1_x[leg] = prs_h_1_x;
-        model->prs_h_1_y[leg] = prs_h_1_y;
-        model->prs_h_2_x[leg] = prs_h_2_x;
-        model->prs_h_2_y[leg] = prs_h_2_y;
+        model->prs_g_in_axes0_x[leg] = prs_g_in_axes0_x;
+        model->prs_g_in_axes0_y[leg] = prs_g_in_axes0_y;
+        model->prs_h_1_in_spec0_x[leg] = prs_h_1_in_spec0_x;
+        model->prs_h_1_in_spec0_y[leg] = prs_h_1_in_spec0_y;
+        model->prs_h_2_in_spec2_x[leg] = prs_h_2_in_spec2_x;
+        model->prs_h_2_in_spec2_y[leg] = prs_h_2_in_spec2_y;
         model->prs_link1_mass[leg] = prs_link1_mass;
         model->prs_link2_mass[leg] = prs_link2_mass;
         model->prs_platform_joint_offset_x[leg] = prs_platform_joint_offset_x;
@@ -659,20 +661,21 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         model->prs_potential_t_3[leg] = prs_potential_t_3;
         model->prs_root_2_t[leg] = prs_root_2_t;
         model->prs_size[leg] = prs_size;
-        total_prs_x += leg < 3 ? prs_platform_point_x : 0;
-        total_prs_y += leg < 3 ? prs_platform_point_y : 0;
-        total_prs_z += leg < 3 ? prs_platform_point_z : 0;
-        total_prs += leg < 3 ? prs_size_t : 0;
+        model->prs_size_t[leg] = prs_size_t;
+        b_c_prs_in_platform_x += leg < 3 ? prs_platform_point_x : 0;
+        b_c_prs_in_platform_y += leg < 3 ? prs_platform_point_y : 0;
+        b_c_prs_in_platform_z += leg < 3 ? prs_platform_point_z : 0;
+        legs_size_prs += leg < 3 ? prs_size_t_2 : 0;
     }
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_prs_x;
-    const real b_c_y = R(0.3333333333333333)*total_prs_y;
-    const real b_c_z = R(0.3333333333333333)*total_prs_z;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_prs_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_prs_in_platform_y;
+    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_prs_in_platform_z;
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
-    const real legs_size = spread_t*root(total_prs);
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
+    const real legs_size = root(legs_size_prs)*spread_t;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
     model->legs_size = legs_size;
     return OK;
 }
@@ -1365,41 +1368,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_6*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_6*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_6*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
-        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_7*R_xz;
-        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_7*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1410,26 +1419,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1448,21 +1466,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_10;
-        s[22*w + k] = J_star_t_11;
-        s[23*w + k] = J_star_t_12;
-        s[24*w + k] = J_star_t_14;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1480,307 +1498,300 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 -
-            prs_base_frame_xy*prs_c_2;
-        const real axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 -
-            prs_base_frame_yy*prs_c_2;
-        const real axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 -
-            prs_base_frame_zy*prs_c_2;
-        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 -
-            prs_base_frame_xx*prs_c_2;
-        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 -
-            prs_base_frame_yx*prs_c_2;
-        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 -
-            prs_base_frame_zx*prs_c_2;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
-        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
-        const real prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t;
-        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
-        /* (prs-w_2) reciprocal vector 2 */
-        const real prs_w_2_t = inv_prs_v_2_t_2*prs_s_2;
-        const real prs_w_2_t_2 = inv_prs_v_2_t_2*prs_c_2;
-        /* (prs-P_c_2) force that accelerates joint 2, per unit */
-        const real prs_h_2_x = m->prs_h_2_x[i];
-        const real prs_h_2_y = m->prs_h_2_y[i];
-        const real prs_P_c_2_r0_x = prs_c_2*prs_h_2_y - prs_h_2_x*prs_s_2;
-        /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prs_J_2_zz = m->prs_J_2_zz[i];
-        const real prs_d_Gamma_2_t = inv_prs_v_2_t_2*(prs_J_2_zz + prs_P_c_2_r0_x*prs_v_2_t);
-        const real prs__r0_x_2 = -prs_P_c_2_r0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2;
-        const real prs__r0_y_2 = prs_c_2*prs_d_Gamma_2_t - prs_P_c_2_r0_x*prs_s_2;
-        /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prs_P_c_1_t = m->prs_P_c_1_t[i];
-        const real prs_d_Gamma_1_t = inv_prs_v_2_t_2*(prs_P_c_2_r0_x + prs_P_c_1_t*prs_v_2_t);
-        const real prs__r0_x_3 = -prs_P_c_1_t*prs_c_2 - prs_d_Gamma_1_t*prs_s_2;
-        const real prs__r0_y_3 = prs_c_2*prs_d_Gamma_1_t - prs_P_c_1_t*prs_s_2;
-        /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real prs_d_G_xx = prs__r0_x*prs__r0_x_3 - prs__r0_x_2*prs_w_2_t;
-        const real prs_d_G_xy = prs__r0_x*prs__r0_y_3 - prs__r0_y_2*prs_w_2_t;
-        const real prs_d_G_yx = prs__r0_x_2*prs_w_2_t_2 + prs__r0_x_3*prs__r0_y;
-        const real prs_d_G_yy = prs__r0_y*prs__r0_y_3 + prs__r0_y_2*prs_w_2_t_2;
-        /* (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prs_d_c_in_base_x = -axis_x_prs_axes2_in_base_x*prs_d_G_xx -
-            axis_y_prs_axes2_in_base_x*prs_d_G_yx;
-        const real prs_d_c_in_base_y = -axis_x_prs_axes2_in_base_y*prs_d_G_xx -
-            axis_y_prs_axes2_in_base_y*prs_d_G_yx;
-        const real prs_d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*prs_d_G_xy -
-            axis_y_prs_axes2_in_base_x*prs_d_G_yy;
-        const real prs_d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*prs_d_G_xy -
-            axis_y_prs_axes2_in_base_y*prs_d_G_yy;
-        const real prs_d_c_in_base_x_3 = axis_x_prs_axes2_in_base_x*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_x*prs_d_c_in_base_x_2;
-        const real prs_d_c_in_base_y_3 = axis_x_prs_axes2_in_base_y*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_x_2;
-        const real prs_d_c_in_base_z = axis_x_prs_axes2_in_base_z*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_x_2;
-        const real prs_d_c_in_base_y_4 = axis_x_prs_axes2_in_base_y*prs_d_c_in_base_y +
-            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_y_2;
-        const real prs_d_c_in_base_z_2 = axis_x_prs_axes2_in_base_z*prs_d_c_in_base_y +
-            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_y_2;
-        const real prs_d_c_in_base_z_3 =
-            axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xx -
-            axis_y_prs_axes2_in_base_z*prs_d_G_yx) +
-            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xy -
-            axis_y_prs_axes2_in_base_z*prs_d_G_yy);
-        /* (M_ta) coupling block of M */
-        const real prs_M_ta_t = prs_d_c_in_base_y_3*prs_q_in_base_z;
-        const real prs_M_ta_t_2 = prs_d_c_in_base_z*prs_q_in_base_y;
-        const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
-        const real prs_M_ta_t_4 = prs_d_c_in_base_x_3*prs_q_in_base_z -
-            prs_d_c_in_base_z*prs_q_in_base_x;
-        const real prs_M_ta_t_5 = prs_d_c_in_base_x_3*prs_q_in_base_y -
-            prs_d_c_in_base_y_3*prs_q_in_base_x;
-        const real prs_M_ta_t_6 = prs_d_c_in_base_y_4*prs_q_in_base_z -
-            prs_d_c_in_base_z_2*prs_q_in_base_y;
-        const real prs_M_ta_t_7 = prs_d_c_in_base_z_2*prs_q_in_base_x;
-        const real prs_M_ta_t_8 = prs_M_ta_t - prs_M_ta_t_7;
-        const real prs_M_ta_t_9 = prs_d_c_in_base_y_3*prs_q_in_base_y -
-            prs_d_c_in_base_y_4*prs_q_in_base_x;
-        const real prs_M_ta_t_10 = prs_d_c_in_base_z_2*prs_q_in_base_z -
-            prs_d_c_in_base_z_3*prs_q_in_base_y;
-        const real prs_M_ta_t_11 = prs_d_c_in_base_z*prs_q_in_base_z -
-            prs_d_c_in_base_z_3*prs_q_in_base_x;
-        const real prs_M_ta_t_12 = prs_M_ta_t_7 - prs_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real prs_M_aa_t = prs_M_ta_t_6*prs_q_in_base_z - prs_M_ta_t_10*prs_q_in_base_y;
-        const real prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_y;
-        const real prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_in_base_y + prs_M_ta_t_9*prs_q_in_base_z;
-        const real prs_M_aa_t_4 = prs_M_ta_t_4*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_x;
-        const real prs_M_aa_t_5 = prs_M_ta_t_12*prs_q_in_base_x + prs_M_ta_t_5*prs_q_in_base_z;
-        const real prs_M_aa_t_6 = prs_M_ta_t_5*prs_q_in_base_y - prs_M_ta_t_9*prs_q_in_base_x;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (prs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
         const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
         const real t_dot_x = s[12*w + j];
         const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2;
+        const real axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2;
+        const real axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2;
+        const real axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2;
+        const real axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2;
+        const real axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2;
+        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
+        const real inv_prs_v_2_t = 1/prs_v_2_t;
+        const real prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y;
+        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
+        const real prs_w_1_x = axis_x_prs_axes2_x*prs_w_1_in_axes2_x +
+            axis_y_prs_axes2_x*prs_w_1_in_axes2_y;
+        const real prs_w_1_y = axis_x_prs_axes2_y*prs_w_1_in_axes2_x +
+            axis_y_prs_axes2_y*prs_w_1_in_axes2_y;
+        const real prs_w_1_z = axis_x_prs_axes2_z*prs_w_1_in_axes2_x +
+            axis_y_prs_axes2_z*prs_w_1_in_axes2_y;
+        /* (prs-w_2) reciprocal vector 2 */
+        const real prs_w_2_t = inv_prs_v_2_t*prs_s_2;
+        const real prs_w_2_in_axes2_y = -inv_prs_v_2_t*prs_c_2;
         /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
             prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+        /* (prs-W_2) centripetal tensor of link 2 */
+        const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
         /* (prs-u_1) centripetal acceleration of the connection point */
         const real prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
         const real prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
         const real prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2*prs_qd_2;
-        /* (prs-u_1) centripetal acceleration of the connection point */
-        const real prs_u_1_tip_y = axis_y_prs_axes2_in_base_x*prs_u_1_x +
-            axis_y_prs_axes2_in_base_y*prs_u_1_y + axis_y_prs_axes2_in_base_z*prs_u_1_z;
-        const real prs_u_1_tip_z = prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y +
-            prs_base_frame_zz*prs_u_1_z;
+        const real prs_u_1_in_axes2_y = axis_y_prs_axes2_x*prs_u_1_x +
+            axis_y_prs_axes2_y*prs_u_1_y + axis_y_prs_axes2_z*prs_u_1_z;
+        const real prs_u_1_in_axes2_z = prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y
+            + prs_base_frame_zz*prs_u_1_z;
         /* (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prs_rel_o_x = axis_x_prs_axes2_in_base_x*prs_u_1_x +
-            axis_x_prs_axes2_in_base_y*prs_u_1_y + axis_x_prs_axes2_in_base_z*prs_u_1_z +
-            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2;
-        /* (prs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real prs_qdd_2_o = inv_prs_v_2_t_2*(prs_rel_o_x*prs_s_2 - prs_c_2*prs_u_1_tip_y);
-        const real prs_qdd_2_o_t = prs_c_2*prs_rel_o_x + prs_qdd_2_o*prs_v_2_t +
-            prs_s_2*prs_u_1_tip_y;
-        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prs_g_r0_x = m->prs_g_r0_x[i];
-        const real prs_g_r0_y = m->prs_g_r0_y[i];
-        const real prs_acc_2_o_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_2_o_t -
-            prs_g_r0_y*prs_s_2;
-        const real prs_acc_2_o_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 +
-            prs_qdd_2_o_t*prs_s_2;
-        /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real prs_mu_2_o_z = prs_acc_2_o_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2_o -
-            prs_acc_2_o_x*prs_h_2_y;
+        const real prs_rel_o_in_axes2_x = axis_x_prs_axes2_x*prs_u_1_x +
+            axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z +
+            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
+        /* (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real prs_qdd_1_o_t = inv_prs_v_2_t*(prs_c_2*prs_u_1_in_axes2_y +
+            prs_rel_o_in_axes2_x*prs_s_2);
+        const real prs_qdd_1_o = prs_c_2*prs_rel_o_in_axes2_x - prs_d_3_in_axes0_y*prs_qdd_1_o_t -
+            prs_s_2*prs_u_1_in_axes2_y;
         /* (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
-        const real prs_acc_1_o_x = -prs_g_r0_x - prs_qdd_2_o_t;
+        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
+        const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x;
+        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
+        const real prs_acc_2_o_in_axes2_x = prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x -
+            prs_g_in_axes0_y*prs_s_2;
+        const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y -
+            prs_qdd_1_o*prs_s_2;
         /* (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
+        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
         const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_f_2_o_x = prs_acc_2_o_x*prs_link2_mass + prs_h_2_y*prs_qdd_2_o -
-            prs_W_2_t*prs_h_2_x;
-        const real prs_f_2_o_y = prs_acc_2_o_y*prs_link2_mass - prs_W_2_t*prs_h_2_y -
-            prs_h_2_x*prs_qdd_2_o;
+        const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*prs_link2_mass +
+            prs_h_2_in_spec2_y*prs_qdd_1_o_t - prs_W_2_t*prs_h_2_in_spec2_x;
+        const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*prs_link2_mass -
+            prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_o_t;
+        /* (prs-P_c_2) force that accelerates joint 2, per unit */
+        const real prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y -
+            prs_h_2_in_spec2_x*prs_s_2;
+        /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
+        const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x -
+            prs_J_2_in_spec2_zz*prs_qdd_1_o_t - prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y;
+        /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real prs_d_Gamma_2_t = inv_prs_v_2_t*(prs_J_2_in_spec2_zz +
+            prs_P_c_2_in_axes0_x*prs_d_3_in_axes0_y);
+        const real prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 -
+            prs_d_Gamma_2_t*prs_s_2;
+        const real prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 -
+            prs_c_2*prs_d_Gamma_2_t;
         /* (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_T_1_o_x = prs_acc_1_o_x*prs_link1_mass - prs_c_2*prs_f_2_o_x -
-            prs_f_2_o_y*prs_s_2;
+        const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
+            prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*prs_s_2;
+        /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+           inertia and weight */
+        const real prs_P_c_1_in_axes0_x = m->prs_P_c_1_in_axes0_x[i];
+        const real prs_d_Gamma_1_t = inv_prs_v_2_t*(prs_P_c_2_in_axes0_x +
+            prs_P_c_1_in_axes0_x*prs_d_3_in_axes0_y);
+        const real prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*prs_c_2 -
+            prs_d_Gamma_1_t*prs_s_2;
+        const real prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 -
+            prs_c_2*prs_d_Gamma_1_t;
+        /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real prs_d_G_in_axes2_xx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_x -
+            prs_d_Gamma_2_in_axes2_x*prs_w_2_t;
+        const real prs_d_G_in_axes2_xy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_x -
+            prs_d_Gamma_2_in_axes2_y*prs_w_2_t;
+        const real prs_d_G_in_axes2_yx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_y +
+            prs_d_Gamma_2_in_axes2_x*prs_w_2_in_axes2_y;
+        const real prs_d_G_in_axes2_yy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y +
+            prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y;
         /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real prs_G_o_t = inv_prs_v_2_t_2*(prs_mu_2_o_z + prs_T_1_o_x*prs_v_2_t);
-        const real prs__r0_x_4 = -prs_G_o_t*prs_s_2 - prs_T_1_o_x*prs_c_2;
-        const real prs__r0_y_4 = prs_G_o_t*prs_c_2 - prs_T_1_o_x*prs_s_2;
+        const real prs_G_o_t = inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z +
+            prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y);
+        const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2;
+        const real prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2;
+        /* (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real prs_d_c_t = -axis_x_prs_axes2_x*prs_d_G_in_axes2_xx -
+            axis_y_prs_axes2_x*prs_d_G_in_axes2_yx;
+        const real prs_d_c_t_2 = -axis_x_prs_axes2_y*prs_d_G_in_axes2_xx -
+            axis_y_prs_axes2_y*prs_d_G_in_axes2_yx;
+        const real prs_d_c_t_3 = -axis_x_prs_axes2_x*prs_d_G_in_axes2_xy -
+            axis_y_prs_axes2_x*prs_d_G_in_axes2_yy;
+        const real prs_d_c_t_4 = -axis_x_prs_axes2_y*prs_d_G_in_axes2_xy -
+            axis_y_prs_axes2_y*prs_d_G_in_axes2_yy;
+        const real prs_d_c_xx = axis_x_prs_axes2_x*prs_d_c_t + axis_y_prs_axes2_x*prs_d_c_t_3;
+        const real prs_d_c_xy = axis_x_prs_axes2_y*prs_d_c_t + axis_y_prs_axes2_y*prs_d_c_t_3;
+        const real prs_d_c_xz = axis_x_prs_axes2_z*prs_d_c_t + axis_y_prs_axes2_z*prs_d_c_t_3;
+        const real prs_d_c_yy = axis_x_prs_axes2_y*prs_d_c_t_2 + axis_y_prs_axes2_y*prs_d_c_t_4;
+        const real prs_d_c_yz = axis_x_prs_axes2_z*prs_d_c_t_2 + axis_y_prs_axes2_z*prs_d_c_t_4;
+        const real prs_d_c_zz = axis_x_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xx -
+            axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
+            axis_y_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
+            axis_y_prs_axes2_z*prs_d_G_in_axes2_yy);
         /* (prs-U) velocity and gravity terms of the leg force */
-        const real prs_U_in_base_x = axis_x_prs_axes2_in_base_x*prs__r0_x_4 +
-            axis_y_prs_axes2_in_base_x*prs__r0_y_4;
-        const real prs_U_in_base_y = axis_x_prs_axes2_in_base_y*prs__r0_x_4 +
-            axis_y_prs_axes2_in_base_y*prs__r0_y_4;
-        const real prs_U_in_base_z = axis_x_prs_axes2_in_base_z*prs__r0_x_4 +
-            axis_y_prs_axes2_in_base_z*prs__r0_y_4;
+        const real prs_U_x = axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
+            axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
+        const real prs_U_y = axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
+            axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
+        const real prs_U_z = axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
+            axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
+        /* (M_ta) coupling block of M */
+        const real prs_M_ta_t = prs_d_c_xy*prs_q_z;
+        const real prs_M_ta_t_2 = prs_d_c_xz*prs_q_y;
+        const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
+        const real prs_M_ta_t_4 = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x;
+        const real prs_M_ta_t_5 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x;
+        const real prs_M_ta_t_6 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y;
+        const real prs_M_ta_t_7 = prs_d_c_yz*prs_q_x;
+        const real prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t;
+        const real prs_M_ta_t_9 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x;
+        const real prs_M_ta_t_10 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y;
+        const real prs_M_ta_t_11 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z;
+        const real prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7;
+        /* (M_aa) rotational block of M */
+        const real prs_M_aa_t = prs_M_ta_t_10*prs_q_y - prs_M_ta_t_6*prs_q_z;
+        const real prs_M_aa_t_2 = prs_M_ta_t_11*prs_q_y - prs_M_ta_t_8*prs_q_z;
+        const real prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_y - prs_M_ta_t_9*prs_q_z;
+        const real prs_M_aa_t_4 = prs_M_ta_t_11*prs_q_x + prs_M_ta_t_4*prs_q_z;
+        const real prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x;
+        const real prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y;
         /* (Z_a) rotational part of Z */
-        const real prs_Z_a_t = prs_U_in_base_z*prs_q_in_base_y - prs_U_in_base_y*prs_q_in_base_z;
-        const real prs_Z_a_t_2 = prs_U_in_base_x*prs_q_in_base_z -
-            prs_U_in_base_z*prs_q_in_base_x;
-        const real prs_Z_a_t_3 = prs_U_in_base_y*prs_q_in_base_x -
-            prs_U_in_base_x*prs_q_in_base_y;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real prs_w_1_in_base_x = axis_x_prs_axes2_in_base_x*prs__r0_x +
-            axis_y_prs_axes2_in_base_x*prs__r0_y;
-        const real prs_w_1_in_base_y = axis_x_prs_axes2_in_base_y*prs__r0_x +
-            axis_y_prs_axes2_in_base_y*prs__r0_y;
-        const real prs_w_1_in_base_z = axis_x_prs_axes2_in_base_z*prs__r0_x +
-            axis_y_prs_axes2_in_base_z*prs__r0_y;
+        const real prs_Z_a_t = prs_U_z*prs_q_y - prs_U_y*prs_q_z;
+        const real prs_Z_a_t_2 = prs_U_x*prs_q_z - prs_U_z*prs_q_x;
+        const real prs_Z_a_t_3 = prs_U_y*prs_q_x - prs_U_x*prs_q_y;
         /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z -
-            prs_q_in_base_z*prs_w_1_in_base_y;
-        const real prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x -
-            prs_q_in_base_x*prs_w_1_in_base_z;
-        const real prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y -
-            prs_q_in_base_y*prs_w_1_in_base_x;
+        const real prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y;
+        const real prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z;
+        const real prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x;
         /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y -
-            prs_base_frame_yz*prs_q_in_base_z;
-        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z -
-            prs_base_frame_zz*prs_q_in_base_x;
-        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x -
-            prs_base_frame_xz*prs_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prs_d_c_in_base_x_3 : prs_d_c_in_base_x_3;  /* total_prs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prs_d_c_in_base_y_3 : prs_d_c_in_base_y_3;  /* total_prs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prs_d_c_in_base_z : prs_d_c_in_base_z;  /* total_prs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + prs_d_c_in_base_y_4 : prs_d_c_in_base_y_4;  /* total_prs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + prs_d_c_in_base_z_2 : prs_d_c_in_base_z_2;  /* total_prs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prs_d_c_in_base_z_3 : prs_d_c_in_base_z_3;  /* total_prs_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + prs_M_ta_t_3 : prs_M_ta_t_3;  /* total_prs_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + prs_M_ta_t_4 : prs_M_ta_t_4;  /* total_prs_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + prs_M_ta_t_5 : prs_M_ta_t_5;  /* total_prs_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + prs_M_ta_t_6 : prs_M_ta_t_6;  /* total_prs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + prs_M_ta_t_8 : prs_M_ta_t_8;  /* total_prs_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + prs_M_ta_t_9 : prs_M_ta_t_9;  /* total_prs_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + prs_M_ta_t_10 : prs_M_ta_t_10;  /* total_prs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + prs_M_ta_t_11 : prs_M_ta_t_11;  /* total_prs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + prs_M_ta_t_12 : prs_M_ta_t_12;  /* total_prs_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + prs_M_aa_t : prs_M_aa_t;  /* total_prs_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + prs_M_aa_t_2 : prs_M_aa_t_2;  /* total_prs_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + prs_M_aa_t_3 : prs_M_aa_t_3;  /* total_prs_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + prs_M_aa_t_4 : prs_M_aa_t_4;  /* total_prs_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + prs_M_aa_t_5 : prs_M_aa_t_5;  /* total_prs_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + prs_M_aa_t_6 : prs_M_aa_t_6;  /* total_prs_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + prs_U_in_base_x : prs_U_in_base_x;  /* total_prs_x */
-        terms[22*count + k] = add ? terms[22*count + k] + prs_U_in_base_y : prs_U_in_base_y;  /* total_prs_y */
-        terms[23*count + k] = add ? terms[23*count + k] + prs_U_in_base_z : prs_U_in_base_z;  /* total_prs_z */
-        terms[24*count + k] = add ? terms[24*count + k] + prs_Z_a_t : prs_Z_a_t;  /* total_prs_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + prs_Z_a_t_2 : prs_Z_a_t_2;  /* total_prs_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + prs_Z_a_t_3 : prs_Z_a_t_3;  /* total_prs_z_2 */
-        o[0*count + k] = prs_w_1_in_base_x;
-        o[1*count + k] = prs_w_1_in_base_y;
-        o[2*count + k] = prs_w_1_in_base_z;
+        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
+        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
+        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prs_d_c_xx : prs_d_c_xx;  /* M_tt_t */
+        terms[1*count + k] = add ? terms[1*count + k] + prs_d_c_xy : prs_d_c_xy;  /* M_tt_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + prs_d_c_xz : prs_d_c_xz;  /* M_tt_t_3 */
+        terms[3*count + k] = add ? terms[3*count + k] + prs_d_c_yy : prs_d_c_yy;  /* M_tt_t_4 */
+        terms[4*count + k] = add ? terms[4*count + k] + prs_d_c_yz : prs_d_c_yz;  /* M_tt_t_5 */
+        terms[5*count + k] = add ? terms[5*count + k] + prs_d_c_zz : prs_d_c_zz;  /* M_tt_t_6 */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + prs_M_ta_t_3 : prs_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + -prs_M_ta_t_4 : -prs_M_ta_t_4;  /* M_ta_prs_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + prs_M_ta_t_5 : prs_M_ta_t_5;  /* M_ta_prs_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + prs_M_ta_t_6 : prs_M_ta_t_6;  /* M_ta_prs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + prs_M_ta_t_8 : prs_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + prs_M_ta_t_9 : prs_M_ta_t_9;  /* M_ta_prs_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + prs_M_ta_t_10 : prs_M_ta_t_10;  /* M_ta_prs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + prs_M_ta_t_11 : prs_M_ta_t_11;  /* M_ta_prs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + prs_M_ta_t_12 : prs_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + prs_M_aa_t : prs_M_aa_t;  /* M_aa_prs_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + prs_M_aa_t_2 : prs_M_aa_t_2;  /* M_aa_prs_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + prs_M_aa_t_3 : prs_M_aa_t_3;  /* M_aa_prs_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + prs_M_aa_t_4 : prs_M_aa_t_4;  /* M_aa_t */
+        terms[19*count + k] = add ? terms[19*count + k] + prs_M_aa_t_5 : prs_M_aa_t_5;  /* M_aa_prs_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + prs_M_aa_t_6 : prs_M_aa_t_6;  /* M_aa_prs_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + prs_U_x : prs_U_x;  /* Z_t_prs_x */
+        terms[22*count + k] = add ? terms[22*count + k] + prs_U_y : prs_U_y;  /* Z_t_prs_y */
+        terms[23*count + k] = add ? terms[23*count + k] + prs_U_z : prs_U_z;  /* Z_t_prs_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + prs_Z_a_t : prs_Z_a_t;  /* Z_a_prs_x */
+        terms[25*count + k] = add ? terms[25*count + k] + prs_Z_a_t_2 : prs_Z_a_t_2;  /* Z_a_prs_y */
+        terms[26*count + k] = add ? terms[26*count + k] + prs_Z_a_t_3 : prs_Z_a_t_3;  /* Z_a_prs_z */
+        /* (prs-w_1) reciprocal vector 1 */
+        o[0*count + k] = prs_w_1_x;
+        o[1*count + k] = prs_w_1_y;
+        o[2*count + k] = prs_w_1_z;
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prs_H_a_1_x;
         o[4*count + k] = prs_H_a_1_y;
         o[5*count + k] = prs_H_a_1_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[6*count + k] = prs_base_frame_xz;
         o[7*count + k] = prs_base_frame_yz;
         o[8*count + k] = prs_base_frame_zz;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = prs_Hk_a_1_x;
         o[10*count + k] = prs_Hk_a_1_y;
         o[11*count + k] = prs_Hk_a_1_z;
-        o[12*count + k] = prs_u_1_tip_z;
-        o[15*count + k] = ((prs_w_1_in_base_x + (prs_w_1_in_base_y + prs_w_1_in_base_z)) +
-            (prs_H_a_1_x + (prs_H_a_1_y + prs_H_a_1_z))) + ((prs_base_frame_xz +
-            (prs_base_frame_yz + prs_base_frame_zz)) + ((prs_Hk_a_1_x + prs_Hk_a_1_y) +
-            (prs_Hk_a_1_z + prs_u_1_tip_z)));
+        /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
+        o[12*count + k] = prs_u_1_in_axes2_z;
+        o[15*count + k] = ((prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + (prs_H_a_1_x + (prs_H_a_1_y +
+            prs_H_a_1_z))) + ((prs_base_frame_xz + (prs_base_frame_yz + prs_base_frame_zz)) +
+            ((prs_Hk_a_1_x + prs_Hk_a_1_y) + (prs_Hk_a_1_z + prs_u_1_in_axes2_z)));
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[13*count + k] = UNLESS(prs_disc_1 >= 0);
         o[14*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
@@ -1812,101 +1823,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_t = sums[0*w + k];
         const real platform_mass = m->platform_mass;
-        const real total_prs_xx = sums[0*w + k];
-        const real M_tt_xx = platform_mass - total_prs_xx;
-        const real total_prs_yy = sums[3*w + k];
-        const real M_tt_yy = platform_mass - total_prs_yy;
-        const real total_prs_zz = sums[5*w + k];
-        const real M_tt_zz = platform_mass - total_prs_zz;
+        const real M_tt_xx = platform_mass - M_tt_t;
+        const real M_tt_t_4 = sums[3*w + k];
+        const real M_tt_yy = platform_mass - M_tt_t_4;
+        const real M_tt_t_6 = sums[5*w + k];
+        const real M_tt_zz = platform_mass - M_tt_t_6;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_prs_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_prs_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_prs_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_prs_xz_2 - h_star_in_base_y;
-        const real total_prs_yx = sums[9*w + k];
-        const real M_ta_yx = total_prs_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_prs_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_prs_yz_2;
-        const real total_prs_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_prs_zx;
-        const real total_prs_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_prs_zy;
+        const real M_ta_prs_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_prs_xy + h_star_z;
+        const real M_ta_prs_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_prs_xz - h_star_y;
+        const real M_ta_prs_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_prs_yx - h_star_z;
+        const real M_ta_prs_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_prs_yz + h_star_x;
+        const real M_ta_prs_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_prs_zx + h_star_y;
+        const real M_ta_prs_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_prs_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_10 = s[21*w + k];
-        const real total_prs_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_10 - total_prs_xx_3;
-        const real J_star_t_11 = s[22*w + k];
-        const real total_prs_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_11 + total_prs_xy_3;
-        const real J_star_t_12 = s[23*w + k];
-        const real total_prs_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_12 - total_prs_xz_3;
-        const real J_star_t_14 = s[24*w + k];
-        const real total_prs_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_14 - total_prs_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_prs_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_prs_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_prs_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_prs_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_prs_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_prs_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_prs_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_prs_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_prs_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_prs_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_t = sums[18*w + k];
+        const real M_aa_yy = J_star_yy - M_aa_t;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_prs_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_prs_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_prs_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prs_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_prs_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_prs_x;
+        const real Z_t_prs_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prs_x;
         const real Z_p_y = s[28*w + k];
-        const real total_prs_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_prs_y;
+        const real Z_t_prs_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prs_y;
         const real Z_p_z = s[29*w + k];
-        const real total_prs_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_prs_z;
+        const real Z_t_prs_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_prs_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_prs_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_prs_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_prs_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_prs_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_prs_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_prs_z_2;
+        const real Z_a_prs_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_prs_x + Z_q_x;
+        const real Z_a_prs_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_prs_y + Z_q_y;
+        const real Z_a_prs_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_prs_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_prs_xy = sums[1*w + k];
-        M[1*w + k] = -total_prs_xy;
-        M[6*w + k] = -total_prs_xy;
-        const real total_prs_xz = sums[2*w + k];
-        M[2*w + k] = -total_prs_xz;
-        M[12*w + k] = -total_prs_xz;
+        const real M_tt_t_2 = sums[1*w + k];
+        M[1*w + k] = -M_tt_t_2;
+        M[6*w + k] = -M_tt_t_2;
+        const real M_tt_t_3 = sums[2*w + k];
+        M[2*w + k] = -M_tt_t_3;
+        M[12*w + k] = -M_tt_t_3;
         M[7*w + k] = M_tt_yy;
-        const real total_prs_yz = sums[4*w + k];
-        M[8*w + k] = -total_prs_yz;
-        M[13*w + k] = -total_prs_yz;
+        const real M_tt_t_5 = sums[4*w + k];
+        M[8*w + k] = -M_tt_t_5;
+        M[13*w + k] = -M_tt_t_5;
         M[14*w + k] = M_tt_zz;
-        const real total_prs_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_prs_xx_2;
-        M[18*w + k] = total_prs_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_prs_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_prs_yy_2;
-        M[25*w + k] = -total_prs_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_prs_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_prs_zz_2;
-        M[32*w + k] = -total_prs_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1916,17 +1930,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_prs_xy + total_prs_xz)) + (M_tt_yy + (total_prs_yz +
-            M_tt_zz))) + ((total_prs_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_prs_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_prs_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_t_3)) + (M_tt_yy + (M_tt_t_5 + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -1997,37 +2012,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_6*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_6*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_6*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
-        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_7*R_xz;
-        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_7*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2040,15 +2061,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_10;
-        s[16*w + k] = J_star_t_11;
-        s[17*w + k] = J_star_t_12;
-        s[18*w + k] = J_star_t_14;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2066,183 +2087,177 @@ INLINE void M_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 -
-            prs_base_frame_xy*prs_c_2;
-        const real axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 -
-            prs_base_frame_yy*prs_c_2;
-        const real axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 -
-            prs_base_frame_zy*prs_c_2;
-        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 -
-            prs_base_frame_xx*prs_c_2;
-        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 -
-            prs_base_frame_yx*prs_c_2;
-        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 -
-            prs_base_frame_zx*prs_c_2;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
-        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
+        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
         /* (prs-w_1) reciprocal vector 1 */
-        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
-        const real prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t;
-        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
+        const real inv_prs_v_2_t = 1/prs_v_2_t;
+        const real prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y;
+        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
         /* (prs-w_2) reciprocal vector 2 */
-        const real prs_w_2_t = inv_prs_v_2_t_2*prs_s_2;
-        const real prs_w_2_t_2 = inv_prs_v_2_t_2*prs_c_2;
+        const real prs_w_2_t = inv_prs_v_2_t*prs_s_2;
+        const real prs_w_2_in_axes2_y = -inv_prs_v_2_t*prs_c_2;
         /* (prs-P_c_2) force that accelerates joint 2, per unit */
-        const real prs_h_2_x = m->prs_h_2_x[i];
-        const real prs_h_2_y = m->prs_h_2_y[i];
-        const real prs_P_c_2_r0_x = prs_c_2*prs_h_2_y - prs_h_2_x*prs_s_2;
+        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
+        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
+        const real prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y -
+            prs_h_2_in_spec2_x*prs_s_2;
         /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real prs_J_2_zz = m->prs_J_2_zz[i];
-        const real prs_d_Gamma_2_t = inv_prs_v_2_t_2*(prs_J_2_zz + prs_P_c_2_r0_x*prs_v_2_t);
-        const real prs__r0_x_2 = -prs_P_c_2_r0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2;
-        const real prs__r0_y_2 = prs_c_2*prs_d_Gamma_2_t - prs_P_c_2_r0_x*prs_s_2;
+        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
+        const real prs_d_Gamma_2_t = inv_prs_v_2_t*(prs_J_2_in_spec2_zz +
+            prs_P_c_2_in_axes0_x*prs_d_3_in_axes0_y);
+        const real prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 -
+            prs_d_Gamma_2_t*prs_s_2;
+        const real prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 -
+            prs_c_2*prs_d_Gamma_2_t;
         /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
            inertia and weight */
-        const real prs_P_c_1_t = m->prs_P_c_1_t[i];
-        const real prs_d_Gamma_1_t = inv_prs_v_2_t_2*(prs_P_c_2_r0_x + prs_P_c_1_t*prs_v_2_t);
-        const real prs__r0_x_3 = -prs_P_c_1_t*prs_c_2 - prs_d_Gamma_1_t*prs_s_2;
-        const real prs__r0_y_3 = prs_c_2*prs_d_Gamma_1_t - prs_P_c_1_t*prs_s_2;
+        const real prs_P_c_1_in_axes0_x = m->prs_P_c_1_in_axes0_x[i];
+        const real prs_d_Gamma_1_t = inv_prs_v_2_t*(prs_P_c_2_in_axes0_x +
+            prs_P_c_1_in_axes0_x*prs_d_3_in_axes0_y);
+        const real prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*prs_c_2 -
+            prs_d_Gamma_1_t*prs_s_2;
+        const real prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 -
+            prs_c_2*prs_d_Gamma_1_t;
         /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real prs_d_G_xx = prs__r0_x*prs__r0_x_3 - prs__r0_x_2*prs_w_2_t;
-        const real prs_d_G_xy = prs__r0_x*prs__r0_y_3 - prs__r0_y_2*prs_w_2_t;
-        const real prs_d_G_yx = prs__r0_x_2*prs_w_2_t_2 + prs__r0_x_3*prs__r0_y;
-        const real prs_d_G_yy = prs__r0_y*prs__r0_y_3 + prs__r0_y_2*prs_w_2_t_2;
+        const real prs_d_G_in_axes2_xx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_x -
+            prs_d_Gamma_2_in_axes2_x*prs_w_2_t;
+        const real prs_d_G_in_axes2_xy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_x -
+            prs_d_Gamma_2_in_axes2_y*prs_w_2_t;
+        const real prs_d_G_in_axes2_yx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_y +
+            prs_d_Gamma_2_in_axes2_x*prs_w_2_in_axes2_y;
+        const real prs_d_G_in_axes2_yy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y +
+            prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y;
         /* (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real prs_d_c_in_base_x = -axis_x_prs_axes2_in_base_x*prs_d_G_xx -
-            axis_y_prs_axes2_in_base_x*prs_d_G_yx;
-        const real prs_d_c_in_base_y = -axis_x_prs_axes2_in_base_y*prs_d_G_xx -
-            axis_y_prs_axes2_in_base_y*prs_d_G_yx;
-        const real prs_d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*prs_d_G_xy -
-            axis_y_prs_axes2_in_base_x*prs_d_G_yy;
-        const real prs_d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*prs_d_G_xy -
-            axis_y_prs_axes2_in_base_y*prs_d_G_yy;
-        const real prs_d_c_in_base_x_3 = axis_x_prs_axes2_in_base_x*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_x*prs_d_c_in_base_x_2;
-        const real prs_d_c_in_base_y_3 = axis_x_prs_axes2_in_base_y*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_x_2;
-        const real prs_d_c_in_base_z = axis_x_prs_axes2_in_base_z*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_x_2;
-        const real prs_d_c_in_base_y_4 = axis_x_prs_axes2_in_base_y*prs_d_c_in_base_y +
-            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_y_2;
-        const real prs_d_c_in_base_z_2 = axis_x_prs_axes2_in_base_z*prs_d_c_in_base_y +
-            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_y_2;
-        const real prs_d_c_in_base_z_3 =
-            axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xx -
-            axis_y_prs_axes2_in_base_z*prs_d_G_yx) +
-            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xy -
-            axis_y_prs_axes2_in_base_z*prs_d_G_yy);
+        const real axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2;
+        const real axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2;
+        const real axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2;
+        const real axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2;
+        const real axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2;
+        const real axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2;
+        const real prs_d_c_t = -axis_x_prs_axes2_x*prs_d_G_in_axes2_xx -
+            axis_y_prs_axes2_x*prs_d_G_in_axes2_yx;
+        const real prs_d_c_t_2 = -axis_x_prs_axes2_y*prs_d_G_in_axes2_xx -
+            axis_y_prs_axes2_y*prs_d_G_in_axes2_yx;
+        const real prs_d_c_t_3 = -axis_x_prs_axes2_x*prs_d_G_in_axes2_xy -
+            axis_y_prs_axes2_x*prs_d_G_in_axes2_yy;
+        const real prs_d_c_t_4 = -axis_x_prs_axes2_y*prs_d_G_in_axes2_xy -
+            axis_y_prs_axes2_y*prs_d_G_in_axes2_yy;
+        const real prs_d_c_xx = axis_x_prs_axes2_x*prs_d_c_t + axis_y_prs_axes2_x*prs_d_c_t_3;
+        const real prs_d_c_xy = axis_x_prs_axes2_y*prs_d_c_t + axis_y_prs_axes2_y*prs_d_c_t_3;
+        const real prs_d_c_xz = axis_x_prs_axes2_z*prs_d_c_t + axis_y_prs_axes2_z*prs_d_c_t_3;
+        const real prs_d_c_yy = axis_x_prs_axes2_y*prs_d_c_t_2 + axis_y_prs_axes2_y*prs_d_c_t_4;
+        const real prs_d_c_yz = axis_x_prs_axes2_z*prs_d_c_t_2 + axis_y_prs_axes2_z*prs_d_c_t_4;
+        const real prs_d_c_zz = axis_x_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xx -
+            axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
+            axis_y_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
+            axis_y_prs_axes2_z*prs_d_G_in_axes2_yy);
         /* (M_ta) coupling block of M */
-        const real prs_M_ta_t = prs_d_c_in_base_y_3*prs_q_in_base_z;
-        const real prs_M_ta_t_2 = prs_d_c_in_base_z*prs_q_in_base_y;
+        const real prs_M_ta_t = prs_d_c_xy*prs_q_z;
+        const real prs_M_ta_t_2 = prs_d_c_xz*prs_q_y;
         const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
-        const real prs_M_ta_t_4 = prs_d_c_in_base_x_3*prs_q_in_base_z -
-            prs_d_c_in_base_z*prs_q_in_base_x;
-        const real prs_M_ta_t_5 = prs_d_c_in_base_x_3*prs_q_in_base_y -
-            prs_d_c_in_base_y_3*prs_q_in_base_x;
-        const real prs_M_ta_t_6 = prs_d_c_in_base_y_4*prs_q_in_base_z -
-            prs_d_c_in_base_z_2*prs_q_in_base_y;
-        const real prs_M_ta_t_7 = prs_d_c_in_base_z_2*prs_q_in_base_x;
-        const real prs_M_ta_t_8 = prs_M_ta_t - prs_M_ta_t_7;
-        const real prs_M_ta_t_9 = prs_d_c_in_base_y_3*prs_q_in_base_y -
-            prs_d_c_in_base_y_4*prs_q_in_base_x;
-        const real prs_M_ta_t_10 = prs_d_c_in_base_z_2*prs_q_in_base_z -
-            prs_d_c_in_base_z_3*prs_q_in_base_y;
-        const real prs_M_ta_t_11 = prs_d_c_in_base_z*prs_q_in_base_z -
-            prs_d_c_in_base_z_3*prs_q_in_base_x;
-        const real prs_M_ta_t_12 = prs_M_ta_t_7 - prs_M_ta_t_2;
+        const real prs_M_ta_t_4 = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x;
+        const real prs_M_ta_t_5 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x;
+        const real prs_M_ta_t_6 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y;
+        const real prs_M_ta_t_7 = prs_d_c_yz*prs_q_x;
+        const real prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t;
+        const real prs_M_ta_t_9 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x;
+        const real prs_M_ta_t_10 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y;
+        const real prs_M_ta_t_11 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z;
+        const real prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7;
         /* (M_aa) rotational block of M */
-        const real prs_M_aa_t = prs_M_ta_t_6*prs_q_in_base_z - prs_M_ta_t_10*prs_q_in_base_y;
-        const real prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_y;
-        const real prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_in_base_y + prs_M_ta_t_9*prs_q_in_base_z;
-        const real prs_M_aa_t_4 = prs_M_ta_t_4*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_x;
-        const real prs_M_aa_t_5 = prs_M_ta_t_12*prs_q_in_base_x + prs_M_ta_t_5*prs_q_in_base_z;
-        const real prs_M_aa_t_6 = prs_M_ta_t_5*prs_q_in_base_y - prs_M_ta_t_9*prs_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + prs_d_c_in_base_x_3 : prs_d_c_in_base_x_3;  /* total_prs_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + prs_d_c_in_base_y_3 : prs_d_c_in_base_y_3;  /* total_prs_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + prs_d_c_in_base_z : prs_d_c_in_base_z;  /* total_prs_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + prs_d_c_in_base_y_4 : prs_d_c_in_base_y_4;  /* total_prs_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + prs_d_c_in_base_z_2 : prs_d_c_in_base_z_2;  /* total_prs_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + prs_d_c_in_base_z_3 : prs_d_c_in_base_z_3;  /* total_prs_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + prs_M_ta_t_3 : prs_M_ta_t_3;  /* total_prs_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + prs_M_ta_t_4 : prs_M_ta_t_4;  /* total_prs_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + prs_M_ta_t_5 : prs_M_ta_t_5;  /* total_prs_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + prs_M_ta_t_6 : prs_M_ta_t_6;  /* total_prs_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + prs_M_ta_t_8 : prs_M_ta_t_8;  /* total_prs_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + prs_M_ta_t_9 : prs_M_ta_t_9;  /* total_prs_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + prs_M_ta_t_10 : prs_M_ta_t_10;  /* total_prs_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + prs_M_ta_t_11 : prs_M_ta_t_11;  /* total_prs_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + prs_M_ta_t_12 : prs_M_ta_t_12;  /* total_prs_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + prs_M_aa_t : prs_M_aa_t;  /* total_prs_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + prs_M_aa_t_2 : prs_M_aa_t_2;  /* total_prs_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + prs_M_aa_t_3 : prs_M_aa_t_3;  /* total_prs_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + prs_M_aa_t_4 : prs_M_aa_t_4;  /* total_prs_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + prs_M_aa_t_5 : prs_M_aa_t_5;  /* total_prs_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + prs_M_aa_t_6 : prs_M_aa_t_6;  /* total_prs_zz_3 */
+        const real prs_M_aa_t = prs_M_ta_t_10*prs_q_y - prs_M_ta_t_6*prs_q_z;
+        const real prs_M_aa_t_2 = prs_M_ta_t_11*prs_q_y - prs_M_ta_t_8*prs_q_z;
+        const real prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_y - prs_M_ta_t_9*prs_q_z;
+        const real prs_M_aa_t_4 = prs_M_ta_t_11*prs_q_x + prs_M_ta_t_4*prs_q_z;
+        const real prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x;
+        const real prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + prs_d_c_xx : prs_d_c_xx;  /* M_tt_t */
+        terms[1*count + k] = add ? terms[1*count + k] + prs_d_c_xy : prs_d_c_xy;  /* M_tt_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + prs_d_c_xz : prs_d_c_xz;  /* M_tt_t_3 */
+        terms[3*count + k] = add ? terms[3*count + k] + prs_d_c_yy : prs_d_c_yy;  /* M_tt_t_4 */
+        terms[4*count + k] = add ? terms[4*count + k] + prs_d_c_yz : prs_d_c_yz;  /* M_tt_t_5 */
+        terms[5*count + k] = add ? terms[5*count + k] + prs_d_c_zz : prs_d_c_zz;  /* M_tt_t_6 */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + prs_M_ta_t_3 : prs_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + -prs_M_ta_t_4 : -prs_M_ta_t_4;  /* M_ta_prs_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + prs_M_ta_t_5 : prs_M_ta_t_5;  /* M_ta_prs_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + prs_M_ta_t_6 : prs_M_ta_t_6;  /* M_ta_prs_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + prs_M_ta_t_8 : prs_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + prs_M_ta_t_9 : prs_M_ta_t_9;  /* M_ta_prs_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + prs_M_ta_t_10 : prs_M_ta_t_10;  /* M_ta_prs_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + prs_M_ta_t_11 : prs_M_ta_t_11;  /* M_ta_prs_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + prs_M_ta_t_12 : prs_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + prs_M_aa_t : prs_M_aa_t;  /* M_aa_prs_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + prs_M_aa_t_2 : prs_M_aa_t_2;  /* M_aa_prs_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + prs_M_aa_t_3 : prs_M_aa_t_3;  /* M_aa_prs_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + prs_M_aa_t_4 : prs_M_aa_t_4;  /* M_aa_t */
+        terms[19*count + k] = add ? terms[19*count + k] + prs_M_aa_t_5 : prs_M_aa_t_5;  /* M_aa_prs_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + prs_M_aa_t_6 : prs_M_aa_t_6;  /* M_aa_prs_zz */
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[0*count + k] = UNLESS(prs_disc_1 >= 0);
         o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
@@ -2259,81 +2274,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_t = sums[0*w + k];
         const real platform_mass = m->platform_mass;
-        const real total_prs_xx = sums[0*w + k];
-        const real M_tt_xx = platform_mass - total_prs_xx;
-        const real total_prs_yy = sums[3*w + k];
-        const real M_tt_yy = platform_mass - total_prs_yy;
-        const real total_prs_zz = sums[5*w + k];
-        const real M_tt_zz = platform_mass - total_prs_zz;
+        const real M_tt_xx = platform_mass - M_tt_t;
+        const real M_tt_t_4 = sums[3*w + k];
+        const real M_tt_yy = platform_mass - M_tt_t_4;
+        const real M_tt_t_6 = sums[5*w + k];
+        const real M_tt_zz = platform_mass - M_tt_t_6;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_prs_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_prs_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_prs_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_prs_xz_2 - h_star_in_base_y;
-        const real total_prs_yx = sums[9*w + k];
-        const real M_ta_yx = total_prs_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_prs_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_prs_yz_2;
-        const real total_prs_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_prs_zx;
-        const real total_prs_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_prs_zy;
+        const real M_ta_prs_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_prs_xy + h_star_z;
+        const real M_ta_prs_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_prs_xz - h_star_y;
+        const real M_ta_prs_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_prs_yx - h_star_z;
+        const real M_ta_prs_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_prs_yz + h_star_x;
+        const real M_ta_prs_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_prs_zx + h_star_y;
+        const real M_ta_prs_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_prs_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_10 = s[15*w + k];
-        const real total_prs_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_10 - total_prs_xx_3;
-        const real J_star_t_11 = s[16*w + k];
-        const real total_prs_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_11 + total_prs_xy_3;
-        const real J_star_t_12 = s[17*w + k];
-        const real total_prs_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_12 - total_prs_xz_3;
-        const real J_star_t_14 = s[18*w + k];
-        const real total_prs_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_14 - total_prs_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_prs_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_prs_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_prs_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_prs_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_prs_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_prs_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_prs_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_prs_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_prs_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_prs_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_t = sums[18*w + k];
+        const real M_aa_yy = J_star_yy - M_aa_t;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_prs_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_prs_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_prs_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_prs_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_prs_xy = sums[1*w + k];
-        M[1*w + k] = -total_prs_xy;
-        M[6*w + k] = -total_prs_xy;
-        const real total_prs_xz = sums[2*w + k];
-        M[2*w + k] = -total_prs_xz;
-        M[12*w + k] = -total_prs_xz;
+        const real M_tt_t_2 = sums[1*w + k];
+        M[1*w + k] = -M_tt_t_2;
+        M[6*w + k] = -M_tt_t_2;
+        const real M_tt_t_3 = sums[2*w + k];
+        M[2*w + k] = -M_tt_t_3;
+        M[12*w + k] = -M_tt_t_3;
         M[7*w + k] = M_tt_yy;
-        const real total_prs_yz = sums[4*w + k];
-        M[8*w + k] = -total_prs_yz;
-        M[13*w + k] = -total_prs_yz;
+        const real M_tt_t_5 = sums[4*w + k];
+        M[8*w + k] = -M_tt_t_5;
+        M[13*w + k] = -M_tt_t_5;
         M[14*w + k] = M_tt_zz;
-        const real total_prs_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_prs_xx_2;
-        M[18*w + k] = total_prs_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_prs_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_prs_yy_2;
-        M[25*w + k] = -total_prs_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_prs_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_prs_zz_2;
-        M[32*w + k] = -total_prs_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2343,10 +2361,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_prs_xy) + (total_prs_xz + (M_tt_yy + total_prs_yz))) +
-            ((M_tt_zz + total_prs_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_prs_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_prs_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2429,16 +2447,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2449,30 +2470,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2494,9 +2524,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2514,170 +2544,162 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 -
-            prs_base_frame_xy*prs_c_2;
-        const real axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 -
-            prs_base_frame_yy*prs_c_2;
-        const real axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 -
-            prs_base_frame_zy*prs_c_2;
-        const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 -
-            prs_base_frame_xx*prs_c_2;
-        const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 -
-            prs_base_frame_yx*prs_c_2;
-        const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 -
-            prs_base_frame_zx*prs_c_2;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
-        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (prs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
         const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
         const real t_dot_x = s[12*w + j];
         const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
         /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+        const real inv_prs_v_2_t = 1/prs_v_2_t;
+        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
             prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+        /* (prs-W_2) centripetal tensor of link 2 */
+        const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
         /* (prs-u_1) centripetal acceleration of the connection point */
+        const real axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2;
+        const real axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2;
+        const real axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2;
         const real prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
         const real prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
         const real prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2*prs_qd_2;
-        /* (prs-u_1) centripetal acceleration of the connection point */
-        const real prs_u_1_tip_y = axis_y_prs_axes2_in_base_x*prs_u_1_x +
-            axis_y_prs_axes2_in_base_y*prs_u_1_y + axis_y_prs_axes2_in_base_z*prs_u_1_z;
+        const real prs_u_1_in_axes2_y = axis_y_prs_axes2_x*prs_u_1_x +
+            axis_y_prs_axes2_y*prs_u_1_y + axis_y_prs_axes2_z*prs_u_1_z;
         /* (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prs_rel_o_x = axis_x_prs_axes2_in_base_x*prs_u_1_x +
-            axis_x_prs_axes2_in_base_y*prs_u_1_y + axis_x_prs_axes2_in_base_z*prs_u_1_z +
-            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2;
-        /* (prs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real prs_qdd_2_o = inv_prs_v_2_t_2*(prs_rel_o_x*prs_s_2 - prs_c_2*prs_u_1_tip_y);
-        const real prs_qdd_2_o_t = prs_c_2*prs_rel_o_x + prs_qdd_2_o*prs_v_2_t +
-            prs_s_2*prs_u_1_tip_y;
-        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prs_g_r0_x = m->prs_g_r0_x[i];
-        const real prs_g_r0_y = m->prs_g_r0_y[i];
-        const real prs_acc_2_o_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_2_o_t -
-            prs_g_r0_y*prs_s_2;
-        const real prs_acc_2_o_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 +
-            prs_qdd_2_o_t*prs_s_2;
-        /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real prs_J_2_zz = m->prs_J_2_zz[i];
-        const real prs_h_2_x = m->prs_h_2_x[i];
-        const real prs_h_2_y = m->prs_h_2_y[i];
-        const real prs_mu_2_o_z = prs_acc_2_o_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2_o -
-            prs_acc_2_o_x*prs_h_2_y;
+        const real axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2;
+        const real axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2;
+        const real axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2;
+        const real prs_rel_o_in_axes2_x = axis_x_prs_axes2_x*prs_u_1_x +
+            axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z +
+            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
+        /* (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
+        const real prs_qdd_1_o_t = inv_prs_v_2_t*(prs_c_2*prs_u_1_in_axes2_y +
+            prs_rel_o_in_axes2_x*prs_s_2);
+        const real prs_qdd_1_o = prs_c_2*prs_rel_o_in_axes2_x - prs_d_3_in_axes0_y*prs_qdd_1_o_t -
+            prs_s_2*prs_u_1_in_axes2_y;
         /* (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
-        const real prs_acc_1_o_x = -prs_g_r0_x - prs_qdd_2_o_t;
+        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
+        const real prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x;
+        /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+           link 2, less gravity */
+        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
+        const real prs_acc_2_o_in_axes2_x = prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x -
+            prs_g_in_axes0_y*prs_s_2;
+        const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y -
+            prs_qdd_1_o*prs_s_2;
         /* (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
+        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
         const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_f_2_o_x = prs_acc_2_o_x*prs_link2_mass + prs_h_2_y*prs_qdd_2_o -
-            prs_W_2_t*prs_h_2_x;
-        const real prs_f_2_o_y = prs_acc_2_o_y*prs_link2_mass - prs_W_2_t*prs_h_2_y -
-            prs_h_2_x*prs_qdd_2_o;
+        const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*prs_link2_mass +
+            prs_h_2_in_spec2_y*prs_qdd_1_o_t - prs_W_2_t*prs_h_2_in_spec2_x;
+        const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*prs_link2_mass -
+            prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_o_t;
+        /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
+        const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x -
+            prs_J_2_in_spec2_zz*prs_qdd_1_o_t - prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y;
         /* (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_T_1_o_x = prs_acc_1_o_x*prs_link1_mass - prs_c_2*prs_f_2_o_x -
-            prs_f_2_o_y*prs_s_2;
+        const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
+            prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*prs_s_2;
         /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real prs_G_o_t = inv_prs_v_2_t_2*(prs_mu_2_o_z + prs_T_1_o_x*prs_v_2_t);
-        const real prs__r0_x = -prs_G_o_t*prs_s_2 - prs_T_1_o_x*prs_c_2;
-        const real prs__r0_y = prs_G_o_t*prs_c_2 - prs_T_1_o_x*prs_s_2;
+        const real prs_G_o_t = inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z +
+            prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y);
+        const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2;
+        const real prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2;
         /* (prs-U) velocity and gravity terms of the leg force */
-        const real prs_U_in_base_x = axis_x_prs_axes2_in_base_x*prs__r0_x +
-            axis_y_prs_axes2_in_base_x*prs__r0_y;
-        const real prs_U_in_base_y = axis_x_prs_axes2_in_base_y*prs__r0_x +
-            axis_y_prs_axes2_in_base_y*prs__r0_y;
-        const real prs_U_in_base_z = axis_x_prs_axes2_in_base_z*prs__r0_x +
-            axis_y_prs_axes2_in_base_z*prs__r0_y;
+        const real prs_U_x = axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
+            axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
+        const real prs_U_y = axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
+            axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
+        const real prs_U_z = axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
+            axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real prs_Z_a_t = prs_U_in_base_z*prs_q_in_base_y - prs_U_in_base_y*prs_q_in_base_z;
-        const real prs_Z_a_t_2 = prs_U_in_base_x*prs_q_in_base_z -
-            prs_U_in_base_z*prs_q_in_base_x;
-        const real prs_Z_a_t_3 = prs_U_in_base_y*prs_q_in_base_x -
-            prs_U_in_base_x*prs_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + prs_U_in_base_x : prs_U_in_base_x;  /* total_prs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prs_U_in_base_y : prs_U_in_base_y;  /* total_prs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prs_U_in_base_z : prs_U_in_base_z;  /* total_prs_z */
-        terms[3*count + k] = add ? terms[3*count + k] + prs_Z_a_t : prs_Z_a_t;  /* total_prs_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + prs_Z_a_t_2 : prs_Z_a_t_2;  /* total_prs_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + prs_Z_a_t_3 : prs_Z_a_t_3;  /* total_prs_z_2 */
+        const real prs_Z_a_t = prs_U_z*prs_q_y - prs_U_y*prs_q_z;
+        const real prs_Z_a_t_2 = prs_U_x*prs_q_z - prs_U_z*prs_q_x;
+        const real prs_Z_a_t_3 = prs_U_y*prs_q_x - prs_U_x*prs_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + prs_U_x : prs_U_x;  /* Z_t_prs_x */
+        terms[1*count + k] = add ? terms[1*count + k] + prs_U_y : prs_U_y;  /* Z_t_prs_y */
+        terms[2*count + k] = add ? terms[2*count + k] + prs_U_z : prs_U_z;  /* Z_t_prs_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + prs_Z_a_t : prs_Z_a_t;  /* Z_a_prs_x */
+        terms[4*count + k] = add ? terms[4*count + k] + prs_Z_a_t_2 : prs_Z_a_t_2;  /* Z_a_prs_y */
+        terms[5*count + k] = add ? terms[5*count + k] + prs_Z_a_t_3 : prs_Z_a_t_3;  /* Z_a_prs_z */
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[0*count + k] = UNLESS(prs_disc_1 >= 0);
         o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
@@ -2694,27 +2716,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_prs_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_prs_x;
+        const real Z_t_prs_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_prs_x;
         const real Z_p_y = s[19*w + k];
-        const real total_prs_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_prs_y;
+        const real Z_t_prs_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_prs_y;
         const real Z_p_z = s[20*w + k];
-        const real total_prs_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_prs_z;
+        const real Z_t_prs_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_prs_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_prs_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_prs_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_prs_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_prs_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_prs_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_prs_z_2;
+        const real Z_a_prs_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_prs_x + Z_q_x;
+        const real Z_a_prs_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_prs_y + Z_q_y;
+        const real Z_a_prs_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_prs_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -2815,95 +2839,93 @@ INLINE void H_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = prs_c_2*prs_platform_joint_offset_x;
+        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
         /* (prs-w_1) reciprocal vector 1 */
         const real prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t;
-        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
-        const real prs_w_1_in_base_x = prs__r0_x*(prs_base_frame_xy*prs_s_2 -
-            prs_base_frame_xx*prs_c_2) + prs__r0_y*(-prs_base_frame_xx*prs_s_2 -
-            prs_base_frame_xy*prs_c_2);
-        const real prs_w_1_in_base_y = prs__r0_x*(prs_base_frame_yy*prs_s_2 -
-            prs_base_frame_yx*prs_c_2) + prs__r0_y*(-prs_base_frame_yx*prs_s_2 -
-            prs_base_frame_yy*prs_c_2);
-        const real prs_w_1_in_base_z = prs__r0_x*(prs_base_frame_zy*prs_s_2 -
-            prs_base_frame_zx*prs_c_2) + prs__r0_y*(-prs_base_frame_zx*prs_s_2 -
-            prs_base_frame_zy*prs_c_2);
+        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
+        const real prs_w_1_x = prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 +
+            prs_base_frame_xy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 -
+            prs_base_frame_xx*prs_s_2);
+        const real prs_w_1_y = prs_w_1_in_axes2_x*(prs_base_frame_yx*prs_c_2 +
+            prs_base_frame_yy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_yy*prs_c_2 -
+            prs_base_frame_yx*prs_s_2);
+        const real prs_w_1_z = prs_w_1_in_axes2_x*(prs_base_frame_zx*prs_c_2 +
+            prs_base_frame_zy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 -
+            prs_base_frame_zx*prs_s_2);
         /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z -
-            prs_q_in_base_z*prs_w_1_in_base_y;
-        const real prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x -
-            prs_q_in_base_x*prs_w_1_in_base_z;
-        const real prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y -
-            prs_q_in_base_y*prs_w_1_in_base_x;
-        o[0*count + k] = prs_w_1_in_base_x;
-        o[1*count + k] = prs_w_1_in_base_y;
-        o[2*count + k] = prs_w_1_in_base_z;
+        const real prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y;
+        const real prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z;
+        const real prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        o[0*count + k] = prs_w_1_x;
+        o[1*count + k] = prs_w_1_y;
+        o[2*count + k] = prs_w_1_z;
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prs_H_a_1_x;
         o[4*count + k] = prs_H_a_1_y;
         o[5*count + k] = prs_H_a_1_z;
-        o[8*count + k] = (prs_w_1_in_base_x + (prs_w_1_in_base_y + prs_w_1_in_base_z)) +
-            (prs_H_a_1_x + (prs_H_a_1_y + prs_H_a_1_z));
+        o[8*count + k] = (prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + (prs_H_a_1_x + (prs_H_a_1_y +
+            prs_H_a_1_z));
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[6*count + k] = UNLESS(prs_disc_1 >= 0);
         o[7*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
@@ -2994,38 +3016,36 @@ INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, co
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
         const real R_xx = s[0*w + j];
         const real R_xy = s[1*w + j];
         const real R_xz = s[2*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[3*w + j];
         const real R_yy = s[4*w + j];
         const real R_yz = s[5*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[6*w + j];
         const real R_zy = s[7*w + j];
         const real R_zz = s[8*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y -
-            prs_base_frame_yz*prs_q_in_base_z;
+        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z -
-            prs_base_frame_zz*prs_q_in_base_x;
-        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x -
-            prs_base_frame_xz*prs_q_in_base_y;
+        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
+        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = prs_base_frame_xz;
         o[1*count + k] = prs_base_frame_yz;
         o[2*count + k] = prs_base_frame_zz;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prs_Hk_a_1_x;
         o[4*count + k] = prs_Hk_a_1_y;
         o[5*count + k] = prs_Hk_a_1_z;
@@ -3129,42 +3149,41 @@ INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t leg, si
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
+        /* (prs-u_1) centripetal acceleration of the connection point */
         const real R_xx = s[0*w + j];
         const real R_xy = s[1*w + j];
         const real R_xz = s[2*w + j];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[3*w + j];
         const real R_yy = s[4*w + j];
         const real R_yz = s[5*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[6*w + j];
         const real R_zy = s[7*w + j];
         const real R_zz = s[8*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
-        /* (prs-S_dot) velocity of the connection point */
         const real omega_y = s[10*w + j];
         const real omega_z = s[11*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real prs_u_1_t = omega_y*prs_q_z - omega_z*prs_q_y;
         const real omega_x = s[9*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
-        /* (prs-u_1) centripetal acceleration of the connection point */
+        const real prs_u_1_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
+        const real prs_u_1_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_u_1_tip_z = prs_base_frame_xz*(omega_y*prs_S_dot_t_3 -
-            omega_z*prs_S_dot_t_2) + prs_base_frame_yz*(omega_z*prs_S_dot_t -
-            omega_x*prs_S_dot_t_3) + prs_base_frame_zz*(omega_x*prs_S_dot_t_2 -
-            omega_y*prs_S_dot_t);
-        o[0*count + k] = prs_u_1_tip_z;
-        o[1*count + k] = prs_u_1_tip_z;
+        const real prs_u_1_in_axes2_z = prs_base_frame_xz*(omega_y*prs_u_1_t_3 -
+            omega_z*prs_u_1_t_2) + prs_base_frame_yz*(omega_z*prs_u_1_t - omega_x*prs_u_1_t_3) +
+            prs_base_frame_zz*(omega_x*prs_u_1_t_2 - omega_y*prs_u_1_t);
+        /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
+        o[0*count + k] = prs_u_1_in_axes2_z;
+        o[1*count + k] = prs_u_1_in_axes2_z;
     }
 }
 
@@ -3264,33 +3283,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3298,31 +3304,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real platform_mass = m->platform_mass;
-        const real f_p_x = a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3350,9 +3382,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3370,190 +3402,188 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
-        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
-        const real prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t;
-        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (prs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
         const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
         const real t_dot_x = s[12*w + j];
         const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
+        const real inv_prs_v_2_t = 1/prs_v_2_t;
+        const real prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y;
+        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
+        const real prs_w_1_t_2 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y;
+        const real prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x;
+        const real prs_w_1_x = prs_base_frame_xx*prs_w_1_t_2 + prs_base_frame_xy*prs_w_1_t_3;
+        const real prs_w_1_y = prs_base_frame_yx*prs_w_1_t_2 + prs_base_frame_yy*prs_w_1_t_3;
+        const real prs_w_1_z = prs_base_frame_zx*prs_w_1_t_2 + prs_base_frame_zy*prs_w_1_t_3;
         /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
             prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
         /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2*prs_qd_2;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y -
-            prs_base_frame_yz*prs_q_in_base_z;
-        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z -
-            prs_base_frame_zz*prs_q_in_base_x;
-        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x -
-            prs_base_frame_xz*prs_q_in_base_y;
+        const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
         /* (prs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y;
+        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z;
+        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x;
+        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x;
         /* (prs-S_ddot) acceleration of the connection point */
         const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
         const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
         const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        const real prs_S_ddot_r0_x = prs_S_ddot_x*prs_base_frame_xx +
-            prs_S_ddot_y*prs_base_frame_yx + prs_S_ddot_z*prs_base_frame_zx;
-        const real prs_S_ddot_r0_y = prs_S_ddot_x*prs_base_frame_xy +
+        const real prs_S_ddot_t = prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx
+            + prs_S_ddot_z*prs_base_frame_zx;
+        const real prs_S_ddot_t_2 = prs_S_ddot_x*prs_base_frame_xy +
             prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
-        const real prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2;
+        const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2;
         /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-        const real prs_rel_x = prs_S_ddot_r0_y*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 - prs_S_ddot_r0_x*prs_c_2;
+        const real prs_rel_in_axes2_x = prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
         /* (prs-qdd_1) acceleration of joint 1 */
-        const real prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2);
-        const real prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x +
-            prs_qdd_2*prs_v_2_t;
-        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prs_g_r0_x = m->prs_g_r0_x[i];
-        const real prs_g_r0_y = m->prs_g_r0_y[i];
-        const real prs_acc_2_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_1_t - prs_g_r0_y*prs_s_2;
-        const real prs_acc_2_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_1_t*prs_s_2;
-        /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prs_J_2_zz = m->prs_J_2_zz[i];
-        const real prs_h_2_x = m->prs_h_2_x[i];
-        const real prs_h_2_y = m->prs_h_2_y[i];
-        const real prs_mu_2_z = prs_acc_2_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2 -
-            prs_acc_2_x*prs_h_2_y;
+        const real prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 +
+            prs_rel_in_axes2_x*prs_s_2);
+        const real prs_qdd_1 = prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
+            prs_d_3_in_axes0_y*prs_qdd_1_t;
         /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prs_acc_1_x = -prs_g_r0_x - prs_qdd_1_t;
+        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
+        const real prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x;
+        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
+        const real prs_acc_2_in_axes2_x = prs_c_2*prs_qdd_1 - prs_c_2*prs_g_in_axes0_x -
+            prs_g_in_axes0_y*prs_s_2;
+        const real prs_acc_2_in_axes2_y = prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y -
+            prs_qdd_1*prs_s_2;
         /* (prs-f_2) inertia force of link 2 less its weight */
+        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
+        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
         const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_f_2_x = prs_acc_2_x*prs_link2_mass + prs_h_2_y*prs_qdd_2 -
-            prs_W_2_t*prs_h_2_x;
-        const real prs_f_2_y = prs_acc_2_y*prs_link2_mass - prs_W_2_t*prs_h_2_y -
-            prs_h_2_x*prs_qdd_2;
+        const real prs_f_2_in_axes2_x = prs_acc_2_in_axes2_x*prs_link2_mass +
+            prs_h_2_in_spec2_y*prs_qdd_1_t - prs_W_2_t*prs_h_2_in_spec2_x;
+        const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*prs_link2_mass -
+            prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_t;
+        /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
+        const real prs_mu_2_in_axes2_z = prs_acc_2_in_axes2_y*prs_h_2_in_spec2_x -
+            prs_J_2_in_spec2_zz*prs_qdd_1_t - prs_acc_2_in_axes2_x*prs_h_2_in_spec2_y;
         /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
         const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_T_1_x = prs_acc_1_x*prs_link1_mass - prs_c_2*prs_f_2_x - prs_f_2_y*prs_s_2;
+        const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*prs_link1_mass +
+            prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*prs_s_2;
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real prs_G_t = inv_prs_v_2_t_2*(prs_mu_2_z + prs_T_1_x*prs_v_2_t);
-        const real prs__r0_x_2 = -prs_G_t*prs_s_2 - prs_T_1_x*prs_c_2;
-        const real prs__r0_y_2 = prs_G_t*prs_c_2 - prs_T_1_x*prs_s_2;
+        const real prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z +
+            prs_T_1_in_axes0_x*prs_d_3_in_axes0_y);
+        const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2;
+        const real prs_G_in_axes2_y = -prs_G_t*prs_c_2 - prs_T_1_in_axes0_x*prs_s_2;
         /* (prs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prs_c_r0_x = prs__r0_x_2*prs_c_2 + prs__r0_y_2*prs_s_2;
-        const real prs_c_r0_y = prs__r0_y_2*prs_c_2 - prs__r0_x_2*prs_s_2;
-        const real prs_c_in_base_x = prs_base_frame_xx*prs_c_r0_x + prs_base_frame_xy*prs_c_r0_y;
-        const real prs_c_in_base_y = prs_base_frame_yx*prs_c_r0_x + prs_base_frame_yy*prs_c_r0_y;
-        const real prs_c_in_base_z = prs_base_frame_zx*prs_c_r0_x + prs_base_frame_zy*prs_c_r0_y;
+        const real prs_c_t = prs_G_in_axes2_y*prs_s_2 - prs_G_in_axes2_x*prs_c_2;
+        const real prs_c_t_2 = -prs_G_in_axes2_x*prs_s_2 - prs_G_in_axes2_y*prs_c_2;
+        const real prs_c_x = prs_base_frame_xx*prs_c_t + prs_base_frame_xy*prs_c_t_2;
+        const real prs_c_y = prs_base_frame_yx*prs_c_t + prs_base_frame_yy*prs_c_t_2;
+        const real prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2;
         /* (R_a) moment that actuators and external wrench must give */
-        const real prs_R_a_t = prs_c_in_base_z*prs_q_in_base_y - prs_c_in_base_y*prs_q_in_base_z;
-        const real prs_R_a_t_2 = prs_c_in_base_x*prs_q_in_base_z -
-            prs_c_in_base_z*prs_q_in_base_x;
-        const real prs_R_a_t_3 = prs_c_in_base_y*prs_q_in_base_x -
-            prs_c_in_base_x*prs_q_in_base_y;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real prs_w_1_r0_x = -prs__r0_x*prs_c_2 - prs__r0_y*prs_s_2;
-        const real prs_w_1_r0_y = prs__r0_x*prs_s_2 - prs__r0_y*prs_c_2;
-        const real prs_w_1_in_base_x = prs_base_frame_xx*prs_w_1_r0_x +
-            prs_base_frame_xy*prs_w_1_r0_y;
-        const real prs_w_1_in_base_y = prs_base_frame_yx*prs_w_1_r0_x +
-            prs_base_frame_yy*prs_w_1_r0_y;
-        const real prs_w_1_in_base_z = prs_base_frame_zx*prs_w_1_r0_x +
-            prs_base_frame_zy*prs_w_1_r0_y;
+        const real prs_R_a_t = prs_c_y*prs_q_z - prs_c_z*prs_q_y;
+        const real prs_R_a_t_2 = prs_c_z*prs_q_x - prs_c_x*prs_q_z;
+        const real prs_R_a_t_3 = prs_c_x*prs_q_y - prs_c_y*prs_q_x;
         /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z -
-            prs_q_in_base_z*prs_w_1_in_base_y;
-        const real prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x -
-            prs_q_in_base_x*prs_w_1_in_base_z;
-        const real prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y -
-            prs_q_in_base_y*prs_w_1_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + prs_c_in_base_x : prs_c_in_base_x;  /* total_prs_x */
-        terms[1*count + k] = add ? terms[1*count + k] + prs_c_in_base_y : prs_c_in_base_y;  /* total_prs_y */
-        terms[2*count + k] = add ? terms[2*count + k] + prs_c_in_base_z : prs_c_in_base_z;  /* total_prs_z */
-        terms[3*count + k] = add ? terms[3*count + k] + prs_R_a_t : prs_R_a_t;  /* total_prs_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + prs_R_a_t_2 : prs_R_a_t_2;  /* total_prs_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + prs_R_a_t_3 : prs_R_a_t_3;  /* total_prs_z_2 */
-        o[0*count + k] = prs_w_1_in_base_x;
-        o[1*count + k] = prs_w_1_in_base_y;
-        o[2*count + k] = prs_w_1_in_base_z;
+        const real prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y;
+        const real prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z;
+        const real prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
+        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
+        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + prs_c_x : prs_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + prs_c_y : prs_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + prs_c_z : prs_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + prs_R_a_t : prs_R_a_t;  /* R_a_prs_x */
+        terms[4*count + k] = add ? terms[4*count + k] + prs_R_a_t_2 : prs_R_a_t_2;  /* R_a_prs_y */
+        terms[5*count + k] = add ? terms[5*count + k] + prs_R_a_t_3 : prs_R_a_t_3;  /* R_a_prs_z */
+        /* (prs-w_1) reciprocal vector 1 */
+        o[0*count + k] = prs_w_1_x;
+        o[1*count + k] = prs_w_1_y;
+        o[2*count + k] = prs_w_1_z;
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prs_H_a_1_x;
         o[4*count + k] = prs_H_a_1_y;
         o[5*count + k] = prs_H_a_1_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[6*count + k] = prs_base_frame_xz;
         o[7*count + k] = prs_base_frame_yz;
         o[8*count + k] = prs_base_frame_zz;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = prs_Hk_a_1_x;
         o[10*count + k] = prs_Hk_a_1_y;
         o[11*count + k] = prs_Hk_a_1_z;
@@ -3561,7 +3591,7 @@ INLINE void required_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         const real prs_size = m->prs_size[i];
         o[12*count + k] = UNLESS(prs_disc_1 >= 0);
         o[13*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
@@ -3590,28 +3620,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_prs_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_prs_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_prs_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_prs_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_prs_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_prs_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_prs_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_prs_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_prs_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_prs_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_prs_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_prs_z_2;
+        const real R_a_prs_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_prs_x + mu_p_x;
+        const real R_a_prs_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_prs_y + mu_p_y;
+        const real R_a_prs_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_prs_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -3731,41 +3763,41 @@ INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t leg,
         const real t_z = s[2*w + j];
         const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        const real prs_q_1 = prs_px_1 + prs_q_1_t;
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = -prs_branch_1*root(prs_disc_1);
+        const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_q_1_t*prs_q_1_t);
         /* (prs-q_2) displacement of joint 2 */
+        const real prs_q_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_q_2 = angle(inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x,
-            -inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t);
+        const real prs_q_2 = angle(prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_q_2_t,
+            prs_platform_joint_offset_x*prs_q_1_t*prs_q_2_t);
+        /* (prs-q_1) displacement of joint 1 */
         o[0*count + k] = prs_q_1;
+        /* (prs-q_2) displacement of joint 2 */
         o[1*count + k] = prs_q_2;
         o[4*count + k] = prs_q_1 + prs_q_2;
         const real prs_root_2_t = m->prs_root_2_t[i];
@@ -3892,84 +3924,84 @@ INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t leg, size_t
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_v_2_t =
-            inv_prs_root_2*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real prs_S_dot_x = t_dot_x + omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real prs_S_dot_x = t_dot_x + omega_y*prs_q_z - omega_z*prs_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real prs_S_dot_y = t_dot_y + omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
+        const real prs_S_dot_y = t_dot_y + omega_z*prs_q_x - omega_x*prs_q_z;
         const real t_dot_z = s[14*w + j];
-        const real prs_S_dot_z = t_dot_z + omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
-        /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2 = (prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
-            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_t;
-        const real prs_qd_2_t = prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
+        const real prs_S_dot_z = t_dot_z + omega_x*prs_q_y - omega_y*prs_q_x;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = 1/(root(prs_rho2_2));
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_v_2_t_2 =
+            -prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_v_2_t*prs_x_2_in_axes0_x;
+        /* (prs-qd_1) rate of joint 1 */
+        const real prs_qd_1_t = (prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_t_2;
+        const real prs_qd_1 = prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
             prs_S_dot_z*prs_base_frame_zx -
-            inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_2;
-        o[0*count + k] = prs_qd_2_t;
-        o[1*count + k] = -prs_qd_2;
-        o[4*count + k] = prs_qd_2_t + prs_qd_2;
+            prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_1_t*prs_v_2_t;
+        /* (prs-qd_1) rate of joint 1 */
+        o[0*count + k] = prs_qd_1;
+        /* (prs-qd_2) rate of joint 2 */
+        o[1*count + k] = -prs_qd_1_t;
+        o[4*count + k] = prs_qd_1 + prs_qd_1_t;
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[2*count + k] = UNLESS(prs_disc_1 >= 0);
         o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t_2) > TOLERANCE*prs_size);
     }
 }
 
@@ -4112,114 +4144,115 @@ INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t leg
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real inv_prs_v_2_t_2 = 1/prs_v_2_t;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (prs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
         const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
         const real t_dot_x = s[12*w + j];
         const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
         /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+        const real inv_prs_v_2_t = 1/prs_v_2_t;
+        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
             prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
         /* (prs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y;
+        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z;
+        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x;
+        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x;
         /* (prs-S_ddot) acceleration of the connection point */
         const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
         const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
         const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        const real prs_S_ddot_r0_x = prs_S_ddot_x*prs_base_frame_xx +
-            prs_S_ddot_y*prs_base_frame_yx + prs_S_ddot_z*prs_base_frame_zx;
-        const real prs_S_ddot_r0_y = prs_S_ddot_x*prs_base_frame_xy +
+        const real prs_S_ddot_t = prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx
+            + prs_S_ddot_z*prs_base_frame_zx;
+        const real prs_S_ddot_t_2 = prs_S_ddot_x*prs_base_frame_xy +
             prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
-        const real prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2;
+        const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2;
         /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-        const real prs_rel_x = prs_S_ddot_r0_y*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 - prs_S_ddot_r0_x*prs_c_2;
+        const real prs_rel_in_axes2_x = prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
         /* (prs-qdd_1) acceleration of joint 1 */
-        const real prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2);
-        const real prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x +
-            prs_platform_joint_offset_x*prs_qdd_2*prs_s_2;
-        o[0*count + k] = -prs_qdd_1_t;
-        o[1*count + k] = -prs_qdd_2;
-        o[4*count + k] = prs_qdd_1_t + prs_qdd_2;
+        const real prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 +
+            prs_rel_in_axes2_x*prs_s_2);
+        const real prs_qdd_1 = prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
+            prs_platform_joint_offset_x*prs_qdd_1_t*prs_s_2;
+        /* (prs-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = prs_qdd_1;
+        /* (prs-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = -prs_qdd_1_t;
+        o[4*count + k] = prs_qdd_1 + prs_qdd_1_t;
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[2*count + k] = UNLESS(prs_disc_1 >= 0);
         o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
@@ -4342,14 +4375,14 @@ INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t leg, size_t
         const real t_z = s[2*w + j];
         const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        o[0*count + k] = prs_disc_1_t_2;
-        o[1*count + k] = prs_disc_1_t_2;
+        /* (prs-phi_c1) distance by which the leg misses the platform, along a direction left out */
+        o[0*count + k] = prs_S_in_axes0_z;
+        o[1*count + k] = prs_S_in_axes0_z;
     }
 }
 
@@ -4488,161 +4521,165 @@ INLINE void legs_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = prs_platform_joint_offset_x*prs_s_2;
-        const real prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real inv_prs_v_2_t_2 = 1/prs_v_2_t_2;
-        const real prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t;
-        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (prs-S_dot) velocity of the connection point */
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y;
+        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
         const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x;
+        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
+        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
         const real t_dot_x = s[12*w + j];
         const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
+        const real inv_prs_v_2_t = 1/prs_v_2_t;
+        const real prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y;
+        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
+        const real prs_w_1_t_2 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y;
+        const real prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x;
+        const real prs_w_1_x = prs_base_frame_xx*prs_w_1_t_2 + prs_base_frame_xy*prs_w_1_t_3;
+        const real prs_w_1_y = prs_base_frame_yx*prs_w_1_t_2 + prs_base_frame_yy*prs_w_1_t_3;
+        const real prs_w_1_z = prs_base_frame_zx*prs_w_1_t_2 + prs_base_frame_zy*prs_w_1_t_3;
         /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2 = inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy +
+        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
             prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
         /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2*prs_qd_2;
+        const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
         /* (prs-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y;
+        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z;
+        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x;
+        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x;
         /* (prs-S_ddot) acceleration of the connection point */
         const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
         const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
         const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        const real prs_S_ddot_r0_x = prs_S_ddot_x*prs_base_frame_xx +
-            prs_S_ddot_y*prs_base_frame_yx + prs_S_ddot_z*prs_base_frame_zx;
-        const real prs_S_ddot_r0_y = prs_S_ddot_x*prs_base_frame_xy +
+        const real prs_S_ddot_t = prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx
+            + prs_S_ddot_z*prs_base_frame_zx;
+        const real prs_S_ddot_t_2 = prs_S_ddot_x*prs_base_frame_xy +
             prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
-        const real prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2;
+        const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2;
         /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-        const real prs_rel_x = prs_S_ddot_r0_y*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 - prs_S_ddot_r0_x*prs_c_2;
+        const real prs_rel_in_axes2_x = prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
         /* (prs-qdd_1) acceleration of joint 1 */
-        const real prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2);
-        const real prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x +
-            prs_qdd_2*prs_v_2_t;
-        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prs_g_r0_x = m->prs_g_r0_x[i];
-        const real prs_g_r0_y = m->prs_g_r0_y[i];
-        const real prs_acc_2_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_1_t - prs_g_r0_y*prs_s_2;
-        const real prs_acc_2_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_1_t*prs_s_2;
-        /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prs_J_2_zz = m->prs_J_2_zz[i];
-        const real prs_h_2_x = m->prs_h_2_x[i];
-        const real prs_h_2_y = m->prs_h_2_y[i];
-        const real prs_mu_2_z = prs_acc_2_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2 -
-            prs_acc_2_x*prs_h_2_y;
+        const real prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 +
+            prs_rel_in_axes2_x*prs_s_2);
+        const real prs_qdd_1 = prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
+            prs_d_3_in_axes0_y*prs_qdd_1_t;
         /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prs_acc_1_x = -prs_g_r0_x - prs_qdd_1_t;
+        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
+        const real prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x;
+        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
+        const real prs_acc_2_in_axes2_x = prs_c_2*prs_qdd_1 - prs_c_2*prs_g_in_axes0_x -
+            prs_g_in_axes0_y*prs_s_2;
+        const real prs_acc_2_in_axes2_y = prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y -
+            prs_qdd_1*prs_s_2;
         /* (prs-f_2) inertia force of link 2 less its weight */
+        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
+        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
         const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_f_2_x = prs_acc_2_x*prs_link2_mass + prs_h_2_y*prs_qdd_2 -
-            prs_W_2_t*prs_h_2_x;
-        const real prs_f_2_y = prs_acc_2_y*prs_link2_mass - prs_W_2_t*prs_h_2_y -
-            prs_h_2_x*prs_qdd_2;
+        const real prs_f_2_in_axes2_x = prs_acc_2_in_axes2_x*prs_link2_mass +
+            prs_h_2_in_spec2_y*prs_qdd_1_t - prs_W_2_t*prs_h_2_in_spec2_x;
+        const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*prs_link2_mass -
+            prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_t;
+        /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
+        const real prs_mu_2_in_axes2_z = prs_acc_2_in_axes2_y*prs_h_2_in_spec2_x -
+            prs_J_2_in_spec2_zz*prs_qdd_1_t - prs_acc_2_in_axes2_x*prs_h_2_in_spec2_y;
         /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
         const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_T_1_x = prs_acc_1_x*prs_link1_mass - prs_c_2*prs_f_2_x - prs_f_2_y*prs_s_2;
+        const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*prs_link1_mass +
+            prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*prs_s_2;
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real prs_G_t = inv_prs_v_2_t_2*(prs_mu_2_z + prs_T_1_x*prs_v_2_t);
-        const real prs__r0_x_2 = -prs_G_t*prs_s_2 - prs_T_1_x*prs_c_2;
-        const real prs__r0_y_2 = prs_G_t*prs_c_2 - prs_T_1_x*prs_s_2;
+        const real prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z +
+            prs_T_1_in_axes0_x*prs_d_3_in_axes0_y);
+        const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2;
+        const real prs_G_in_axes2_y = -prs_G_t*prs_c_2 - prs_T_1_in_axes0_x*prs_s_2;
         /* (prs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prs_c_r0_x = prs__r0_x_2*prs_c_2 + prs__r0_y_2*prs_s_2;
-        const real prs_c_r0_y = prs__r0_y_2*prs_c_2 - prs__r0_x_2*prs_s_2;
-        const real prs_c_in_base_x = prs_base_frame_xx*prs_c_r0_x + prs_base_frame_xy*prs_c_r0_y;
-        const real prs_c_in_base_y = prs_base_frame_yx*prs_c_r0_x + prs_base_frame_yy*prs_c_r0_y;
-        const real prs_c_in_base_z = prs_base_frame_zx*prs_c_r0_x + prs_base_frame_zy*prs_c_r0_y;
+        const real prs_c_t = prs_G_in_axes2_y*prs_s_2 - prs_G_in_axes2_x*prs_c_2;
+        const real prs_c_t_2 = -prs_G_in_axes2_x*prs_s_2 - prs_G_in_axes2_y*prs_c_2;
+        const real prs_c_x = prs_base_frame_xx*prs_c_t + prs_base_frame_xy*prs_c_t_2;
+        const real prs_c_y = prs_base_frame_yx*prs_c_t + prs_base_frame_yy*prs_c_t_2;
+        const real prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2;
+        /* (prs-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        o[0*count + k] = prs_c_x;
+        o[1*count + k] = prs_c_y;
+        o[2*count + k] = prs_c_z;
         /* (prs-w_1) reciprocal vector 1 */
-        const real prs_w_1_r0_x = -prs__r0_x*prs_c_2 - prs__r0_y*prs_s_2;
-        const real prs_w_1_r0_y = prs__r0_x*prs_s_2 - prs__r0_y*prs_c_2;
-        const real prs_w_1_in_base_x = prs_base_frame_xx*prs_w_1_r0_x +
-            prs_base_frame_xy*prs_w_1_r0_y;
-        const real prs_w_1_in_base_y = prs_base_frame_yx*prs_w_1_r0_x +
-            prs_base_frame_yy*prs_w_1_r0_y;
-        const real prs_w_1_in_base_z = prs_base_frame_zx*prs_w_1_r0_x +
-            prs_base_frame_zy*prs_w_1_r0_y;
-        o[0*count + k] = prs_c_in_base_x;
-        o[1*count + k] = prs_c_in_base_y;
-        o[2*count + k] = prs_c_in_base_z;
-        o[3*count + k] = prs_w_1_in_base_x;
-        o[4*count + k] = prs_w_1_in_base_y;
-        o[5*count + k] = prs_w_1_in_base_z;
+        o[3*count + k] = prs_w_1_x;
+        o[4*count + k] = prs_w_1_y;
+        o[5*count + k] = prs_w_1_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[6*count + k] = prs_base_frame_xz;
         o[7*count + k] = prs_base_frame_yz;
         o[8*count + k] = prs_base_frame_zz;
@@ -4650,7 +4687,7 @@ INLINE void legs_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real prs_size = m->prs_size[i];
         o[9*count + k] = UNLESS(prs_disc_1 >= 0);
         o[10*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t_2) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
@@ -4725,14 +4762,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real platform_mass = m->platform_mass;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            platform_mass*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z +
-            platform_mass*t_y) + gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z +
-            platform_mass*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + platform_mass*t_x) +
+            gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x
+            + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -4781,59 +4819,60 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t leg, size_t l
         const real t_z = s[2*w + j];
         const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        const real prs_q_1 = prs_px_1 + prs_q_1_t;
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-q_1) displacement of joint 1 */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_q_1_t = -prs_branch_1*root(prs_disc_1);
+        const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_q_1_t*prs_q_1_t);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (potential) potential energy */
-        const real prs_b_r0_x = m->prs_b_r0_x[i];
-        const real prs_potential_t_4 = prs_b_r0_x + prs_q_1;
-        const real prs_g_r0_x = m->prs_g_r0_x[i];
-        const real prs_g_r0_y = m->prs_g_r0_y[i];
-        const real prs_h_1_x = m->prs_h_1_x[i];
-        const real prs_h_1_y = m->prs_h_1_y[i];
-        const real prs_h_2_x = m->prs_h_2_x[i];
-        const real prs_h_2_y = m->prs_h_2_y[i];
+        const real prs_b_in_axes0_x = m->prs_b_in_axes0_x[i];
+        const real prs_potential_t_4 = prs_b_in_axes0_x + prs_q_1;
+        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
+        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
+        const real prs_h_1_in_spec0_x = m->prs_h_1_in_spec0_x[i];
+        const real prs_h_1_in_spec0_y = m->prs_h_1_in_spec0_y[i];
+        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
+        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
         const real prs_link1_mass = m->prs_link1_mass[i];
         const real prs_link2_mass = m->prs_link2_mass[i];
         const real prs_potential_t = m->prs_potential_t[i];
         const real prs_potential_t_2 = m->prs_potential_t_2[i];
         const real prs_potential_t_3 = m->prs_potential_t_3[i];
-        const real prs_potential_t_5 = prs_potential_t_3 + prs_g_r0_x*(prs_h_1_x +
-            prs_link1_mass*prs_potential_t_4 + prs_link2_mass*prs_potential_t_4 -
-            prs_c_2*prs_h_2_x - prs_h_2_y*prs_s_2) + prs_g_r0_y*(prs_h_1_y + prs_potential_t +
-            prs_potential_t_2 + prs_h_2_x*prs_s_2 - prs_c_2*prs_h_2_y);
-        terms[0*count + k] = add ? terms[0*count + k] + prs_potential_t_5 : prs_potential_t_5;  /* total_prs */
+        const real prs_potential_t_5 = prs_potential_t_3 + prs_g_in_axes0_x*(prs_h_1_in_spec0_x +
+            prs_c_2*prs_h_2_in_spec2_x + prs_link1_mass*prs_potential_t_4 +
+            prs_link2_mass*prs_potential_t_4 - prs_h_2_in_spec2_y*prs_s_2) +
+            prs_g_in_axes0_y*(prs_h_1_in_spec0_y + prs_potential_t + prs_potential_t_2 +
+            prs_c_2*prs_h_2_in_spec2_y + prs_h_2_in_spec2_x*prs_s_2);
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + prs_potential_t_5 : prs_potential_t_5;  /* potential_t_2 */
         const real prs_root_2_t = m->prs_root_2_t[i];
         o[0*count + k] = UNLESS(prs_disc_1 >= 0);
         o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t);
@@ -4853,8 +4892,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_prs = sums[0*w + k];
-        const real potential_ = -potential_t - total_prs;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -4924,6 +4964,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -4944,132 +4985,129 @@ INLINE void condition_legs_prs(const prepared *m, size_t w, size_t leg, size_t l
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real prs_q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real prs_q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z;
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x;
+        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y;
+        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
         const real prs_base_point_z = m->prs_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z;
-        /* (prs-px_1) component along axis 1 */
+        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
         const real prs_base_frame_yx = m->prs_base_frame_yx[i];
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_px_1 = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        /* (prs-disc_1) discriminant of the distance equation */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_disc_1_t_2 = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
             prs_S_z*prs_base_frame_zz;
-        const real prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_disc_1_t = m->prs_disc_1_t[i];
-        const real prs_disc_1 = prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 -
-            prs_disc_1_t_3;
-        /* (prs-q_1) displacement of joint 1 */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_q_1_t = prs_branch_1*root(prs_disc_1);
-        /* (prs-S) from the base point to the connection point */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_r0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        /* (prs-disc_1) discriminant of the distance equation */
+        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+        const real prs_size_t = m->prs_size_t[i];
+        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+        /* (prs-x_2) from the origin of joint 2 to the connection point */
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
+            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prs_root_2 = 1/(root(prs_rho2_2));
+        const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t;
+        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
         /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x;
+        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
         /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = prs_c_2*prs_platform_joint_offset_x;
+        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
         /* (prs-w_1) reciprocal vector 1 */
         const real prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t;
-        const real prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2;
-        const real prs_w_1_in_base_x = prs__r0_x*(prs_base_frame_xy*prs_s_2 -
-            prs_base_frame_xx*prs_c_2) + prs__r0_y*(-prs_base_frame_xx*prs_s_2 -
-            prs_base_frame_xy*prs_c_2);
-        const real prs_w_1_in_base_y = prs__r0_x*(prs_base_frame_yy*prs_s_2 -
-            prs_base_frame_yx*prs_c_2) + prs__r0_y*(-prs_base_frame_yx*prs_s_2 -
-            prs_base_frame_yy*prs_c_2);
-        const real prs_w_1_in_base_z = prs__r0_x*(prs_base_frame_zy*prs_s_2 -
-            prs_base_frame_zx*prs_c_2) + prs__r0_y*(-prs_base_frame_zx*prs_s_2 -
-            prs_base_frame_zy*prs_c_2);
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z -
-            prs_q_in_base_z*prs_w_1_in_base_y;
-        const real prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x -
-            prs_q_in_base_x*prs_w_1_in_base_z;
-        const real prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y -
-            prs_q_in_base_y*prs_w_1_in_base_x;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y -
-            prs_base_frame_yz*prs_q_in_base_z;
-        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z -
-            prs_base_frame_zz*prs_q_in_base_x;
-        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x -
-            prs_base_frame_xz*prs_q_in_base_y;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real prs_spread_t = b_c_x - prs_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real prs_spread_t_2 = b_c_y - prs_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real prs_spread_t_3 = b_c_z - prs_platform_point_z;
-        const real prs_spread_t_4 = prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 +
-            prs_spread_t_3*prs_spread_t_3;
-        /* (prs-root_2) amplitude: off the manifold the nearest angle is taken */
-        const real prs_pivot_size = magnitude(prs_rho2_2);
-        /* (prs-w_1) reciprocal vector 1 */
-        const real prs_pivot_size_2 = magnitude(prs_v_2_t);
+        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
+        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
+        const real prs_w_1_x = prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 +
+            prs_base_frame_xy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 -
+            prs_base_frame_xx*prs_s_2);
+        const real prs_w_1_y = prs_w_1_in_axes2_x*(prs_base_frame_yx*prs_c_2 +
+            prs_base_frame_yy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_yy*prs_c_2 -
+            prs_base_frame_yx*prs_s_2);
+        const real prs_w_1_z = prs_w_1_in_axes2_x*(prs_base_frame_zx*prs_c_2 +
+            prs_base_frame_zy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 -
+            prs_base_frame_zx*prs_s_2);
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real inv_prs_root_2_t_2 = m->inv_prs_root_2_t_2[i];
+        const real prs_pivot_size = magnitude(prs_rho2_2);
+        const real prs_pivot_size_2 = magnitude(prs_v_2_t);
+        const real inv_prs_root_2_t = m->inv_prs_root_2_t[i];
         const real inv_prs_size = m->inv_prs_size[i];
-        const real prs_least_pivots = lesser(root(inv_prs_root_2_t_2*prs_pivot_size),
+        const real prs_least_pivots = lesser(root(inv_prs_root_2_t*prs_pivot_size),
             inv_prs_size*prs_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + prs_spread_t_4 : prs_spread_t_4;  /* total_prs */
-        o[0*count + k] = prs_w_1_in_base_x;
-        o[1*count + k] = prs_w_1_in_base_y;
-        o[2*count + k] = prs_w_1_in_base_z;
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+        const real prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y;
+        const real prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z;
+        const real prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
+        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
+        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real prs_spread_t = b_c_in_platform_x - prs_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real prs_spread_t_2 = b_c_in_platform_y - prs_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real prs_spread_t_3 = b_c_in_platform_z - prs_platform_point_z;
+        const real prs_spread_t_4 = prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 +
+            prs_spread_t_3*prs_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + prs_spread_t_4 : prs_spread_t_4;  /* spread_prs */
+        /* (prs-w_1) reciprocal vector 1 */
+        o[0*count + k] = prs_w_1_x;
+        o[1*count + k] = prs_w_1_y;
+        o[2*count + k] = prs_w_1_z;
+        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prs_H_a_1_x;
         o[4*count + k] = prs_H_a_1_y;
         o[5*count + k] = prs_H_a_1_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[6*count + k] = prs_base_frame_xz;
         o[7*count + k] = prs_base_frame_yz;
         o[8*count + k] = prs_base_frame_zz;
+        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = prs_Hk_a_1_x;
         o[10*count + k] = prs_Hk_a_1_y;
         o[11*count + k] = prs_Hk_a_1_z;
+        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[12*count + k] = prs_least_pivots;
         o[13*count + k] = prs_disc_1;
-        o[16*count + k] = ((prs_w_1_in_base_x + (prs_w_1_in_base_y + prs_w_1_in_base_z)) +
-            ((prs_H_a_1_x + prs_H_a_1_y) + (prs_H_a_1_z + prs_base_frame_xz))) +
-            ((prs_base_frame_yz + (prs_base_frame_zz + prs_Hk_a_1_x)) + ((prs_Hk_a_1_y +
-            prs_Hk_a_1_z) + (prs_least_pivots + prs_disc_1)));
+        o[16*count + k] = ((prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + ((prs_H_a_1_x + prs_H_a_1_y) +
+            (prs_H_a_1_z + prs_base_frame_xz))) + ((prs_base_frame_yz + (prs_base_frame_zz +
+            prs_Hk_a_1_x)) + ((prs_Hk_a_1_y + prs_Hk_a_1_z) + (prs_least_pivots + prs_disc_1)));
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
         o[14*count + k] = UNLESS(prs_disc_1 >= 0);
         o[15*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(-prs_v_2_t) > TOLERANCE*prs_size);
+            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
     }
 }
 
@@ -5102,9 +5140,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_prs = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_prs = sums[0*w + k];
-        const real spread_ = spread_t*root(total_prs);
+        const real spread_ = root(spread_prs)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

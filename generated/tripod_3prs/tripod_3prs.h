@@ -97,18 +97,21 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type prs; copies of the first fill up */
-    tripod_3prs_real inv_prs_root_2_t_2[4], inv_prs_size[4], prs_J_2_zz[4], prs_P_c_1_t[4],
-            prs_b_r0_x[4], prs_base_frame_xx[4], prs_base_frame_xy[4], prs_base_frame_xz[4],
-            prs_base_frame_yx[4], prs_base_frame_yy[4], prs_base_frame_yz[4], prs_base_frame_zx[4],
-            prs_base_frame_zy[4], prs_base_frame_zz[4], prs_base_point_x[4], prs_base_point_y[4],
-            prs_base_point_z[4], prs_branch_1[4], prs_disc_1_t[4], prs_g_r0_x[4], prs_g_r0_y[4],
-            prs_h_1_x[4], prs_h_1_y[4], prs_h_2_x[4], prs_h_2_y[4], prs_link1_mass[4],
-            prs_link2_mass[4], prs_platform_joint_offset_x[4], prs_platform_point_x[4],
-            prs_platform_point_y[4], prs_platform_point_z[4], prs_potential_t[4],
-            prs_potential_t_2[4], prs_potential_t_3[4], prs_root_2_t[4], prs_size[4];
-    tripod_3prs_real J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, platform_mass, spread_t;
+    tripod_3prs_real inv_prs_root_2_t[4], inv_prs_size[4], prs_J_2_in_spec2_zz[4],
+            prs_P_c_1_in_axes0_x[4], prs_b_in_axes0_x[4], prs_base_frame_xx[4], prs_base_frame_xy[4],
+            prs_base_frame_xz[4], prs_base_frame_yx[4], prs_base_frame_yy[4], prs_base_frame_yz[4],
+            prs_base_frame_zx[4], prs_base_frame_zy[4], prs_base_frame_zz[4], prs_base_point_x[4],
+            prs_base_point_y[4], prs_base_point_z[4], prs_branch_1[4], prs_g_in_axes0_x[4],
+            prs_g_in_axes0_y[4], prs_h_1_in_spec0_x[4], prs_h_1_in_spec0_y[4], prs_h_2_in_spec2_x[4],
+            prs_h_2_in_spec2_y[4], prs_link1_mass[4], prs_link2_mass[4],
+            prs_platform_joint_offset_x[4], prs_platform_point_x[4], prs_platform_point_y[4],
+            prs_platform_point_z[4], prs_potential_t[4], prs_potential_t_2[4], prs_potential_t_3[4],
+            prs_root_2_t[4], prs_size[4], prs_size_t[4];
+    tripod_3prs_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
+            J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, platform_mass, spread_t;
 } tripod_3prs_model;
 
 extern const tripod_3prs_params tripod_3prs_default_params;

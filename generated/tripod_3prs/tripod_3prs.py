@@ -361,7 +361,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -525,29 +525,29 @@ def _prepare(p):
     prs_link2_inertia_zz = p.prs_link2_inertia[:, 2, 2]
     prs_branch_1 = _BRANCHES["prs_branch_1"]
     # (h_star) first moment about the platform origin
-    h_star_x = platform_centre_of_mass_x*platform_mass
-    h_star_y = platform_centre_of_mass_y*platform_mass
-    h_star_z = platform_centre_of_mass_z*platform_mass
+    h_star_in_platform_x = platform_centre_of_mass_x*platform_mass
+    h_star_in_platform_y = platform_centre_of_mass_y*platform_mass
+    h_star_in_platform_z = platform_centre_of_mass_z*platform_mass
     # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
     J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3
-    J_star_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4)
-    J_star_xy = (
+    J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4)
+    J_star_in_platform_xy = (
     platform_inertia_xy - platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass
     )
-    J_star_xz = (
+    J_star_in_platform_xz = (
     platform_inertia_xz - platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass
     )
-    J_star_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4)
-    J_star_yz = (
+    J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4)
+    J_star_in_platform_yz = (
     platform_inertia_yz - platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     )
-    J_star_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4)
-    J_star_t_5 = J_star_xx - J_star_yy
+    J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4)
+    J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_6 = 0.5*J_star_t_5
-    J_star_t_7 = J_star_xx - J_star_zz
+    J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_8 = 0.5*J_star_t_7
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
@@ -555,112 +555,118 @@ def _prepare(p):
     Z_p_t_3 = gravity_z*platform_mass
     # (spread) rms distance of the platform points from their centroid
     spread_t = 0.3333333333333333*sqrt(3.0)
-    # (prs-disc_1) discriminant of the distance equation
-    prs_disc_1_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x
     # (prs-size) length of the leg's lever arms, the measure of what is near singular
-    prs_size_t = 3.5999999999999994e-07 + prs_disc_1_t
-    prs_size = sqrt(prs_size_t)
-    # (prs-root_2) amplitude: off the manifold the nearest angle is taken
-    prs_root_2_t = prs_size*prs_size*prs_size_t
+    prs_size_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x
+    prs_size_t_2 = 3.5999999999999994e-07 + prs_size_t
+    prs_size = sqrt(prs_size_t_2)
+    # (prs-h_1) first moment of link 1 about the origin of link 1
+    prs_h_1_in_spec0_x = prs_link1_centre_of_mass_x*prs_link1_mass
+    prs_h_1_in_spec0_y = prs_link1_centre_of_mass_y*prs_link1_mass
+    # (prs-h_2) first moment of link 2 about the origin of link 2
+    prs_h_2_in_spec2_x = prs_link2_centre_of_mass_x*prs_link2_mass
+    prs_h_2_in_spec2_y = prs_link2_centre_of_mass_y*prs_link2_mass
     # (prs-J_2) inertia tensor of link 2 about the origin of link 2
     prs_J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z
     prs_J_2_t_2 = (
     prs_J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x +
         prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y
     )
-    prs_J_2_zz = prs_link2_inertia_zz - prs_link2_mass*(prs_J_2_t - prs_J_2_t_2)
-    # (prs-h_2) first moment of link 2 about the origin of link 2
-    prs_h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass
-    prs_h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass
-    # (prs-P_c_1) force that accelerates joint 1, per unit
-    prs_P_c_1_t = prs_link1_mass + prs_link2_mass
-    # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    prs_g_r0_x = (
+    prs_J_2_in_spec2_zz = prs_link2_inertia_zz - prs_link2_mass*(prs_J_2_t - prs_J_2_t_2)
+    # (prs-root_2) amplitude: off the manifold the nearest angle is taken
+    prs_root_2_t = prs_size*prs_size*prs_size_t_2
+    # (prs-acc_1) acceleration of the reference point of link 1, less gravity
+    prs_g_in_axes0_x = (
     gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx + gravity_z*prs_base_frame_zx
     )
-    prs_g_r0_y = (
+    # (prs-acc_2) acceleration of the reference point of link 2, less gravity
+    prs_g_in_axes0_y = (
     gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy + gravity_z*prs_base_frame_zy
     )
-    # (prs-h_1) first moment of link 1 about the origin of link 1
-    prs_h_1_x = prs_link1_centre_of_mass_x*prs_link1_mass
-    prs_h_1_y = prs_link1_centre_of_mass_y*prs_link1_mass
+    # (prs-P_c_1) force that accelerates joint 1, per unit
+    prs_P_c_1_in_axes0_x = prs_link1_mass + prs_link2_mass
+    # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+    inv_prs_root_2_t = 1.0/prs_root_2_t
+    inv_prs_size = 1.0/prs_size
     # (potential) potential energy
-    prs_b_r0_x = (
+    prs_b_in_axes0_x = (
     prs_base_frame_xx*prs_base_point_x + prs_base_frame_yx*prs_base_point_y +
         prs_base_frame_zx*prs_base_point_z
     )
-    prs_b_r0_y = (
+    prs_b_in_axes0_y = (
     prs_base_frame_xy*prs_base_point_x + prs_base_frame_yy*prs_base_point_y +
         prs_base_frame_zy*prs_base_point_z
     )
-    prs_b_r0_z = (
+    prs_b_in_axes0_z = (
     prs_base_frame_xz*prs_base_point_x + prs_base_frame_yz*prs_base_point_y +
         prs_base_frame_zz*prs_base_point_z
     )
-    prs_potential_t = prs_b_r0_y*prs_link1_mass
-    prs_potential_t_2 = prs_b_r0_y*prs_link2_mass
+    prs_potential_t = prs_b_in_axes0_y*prs_link1_mass
+    prs_potential_t_2 = prs_b_in_axes0_y*prs_link2_mass
     prs_potential_t_3 = (
     (gravity_x*prs_base_frame_xz + gravity_y*prs_base_frame_yz +
-        gravity_z*prs_base_frame_zz)*(prs_b_r0_z*prs_link1_mass + prs_b_r0_z*prs_link2_mass +
-        prs_link1_centre_of_mass_z*prs_link1_mass + prs_link2_centre_of_mass_z*prs_link2_mass)
+        gravity_z*prs_base_frame_zz)*(prs_b_in_axes0_z*prs_link1_mass +
+        prs_b_in_axes0_z*prs_link2_mass + prs_link1_centre_of_mass_z*prs_link1_mass +
+        prs_link2_centre_of_mass_z*prs_link2_mass)
     )
-    # (prs-root_2) amplitude: off the manifold the nearest angle is taken
-    inv_prs_root_2_t_2 = 1.0/prs_root_2_t
-    # (prs-w_1) reciprocal vector 1
-    inv_prs_size = 1.0/prs_size
-    total_prs_x = np.sum(np.broadcast_to(prs_platform_point_x, _prs))
-    total_prs_y = np.sum(np.broadcast_to(prs_platform_point_y, _prs))
-    total_prs_z = np.sum(np.broadcast_to(prs_platform_point_z, _prs))
-    total_prs = np.sum(np.broadcast_to(prs_size_t, _prs))
+    b_c_prs_in_platform_x = np.sum(np.broadcast_to(prs_platform_point_x, _prs))
+    b_c_prs_in_platform_y = np.sum(np.broadcast_to(prs_platform_point_y, _prs))
+    b_c_prs_in_platform_z = np.sum(np.broadcast_to(prs_platform_point_z, _prs))
+    legs_size_prs = np.sum(np.broadcast_to(prs_size_t_2, _prs))
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_prs_x
-    b_c_y = 0.3333333333333333*total_prs_y
-    b_c_z = 0.3333333333333333*total_prs_z
+    b_c_in_platform_x = 0.3333333333333333*b_c_prs_in_platform_x
+    b_c_in_platform_y = 0.3333333333333333*b_c_prs_in_platform_y
+    b_c_in_platform_z = 0.3333333333333333*b_c_prs_in_platform_z
     # (legs_size) rms size of the legs, taken where the platform points coincide
-    legs_size = spread_t*sqrt(total_prs)
+    legs_size = sqrt(legs_size_prs)*spread_t
     return {
         "dynamics": (
-        (J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-                Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-                h_star_z, platform_mass,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
+                J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_prs,
-        (prs_J_2_zz, prs_P_c_1_t, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
-                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
-                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
-                    prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y,
-                    prs_h_2_x, prs_h_2_y, prs_link1_mass, prs_link2_mass,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, prs_root_2_t, prs_size,),
+        (prs_J_2_in_spec2_zz, prs_P_c_1_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy,
+                    prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
+                    prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
+                    prs_base_point_y, prs_base_point_z, prs_branch_1, prs_g_in_axes0_x,
+                    prs_g_in_axes0_y, prs_h_2_in_spec2_x, prs_h_2_in_spec2_y, prs_link1_mass,
+                    prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
+                    prs_size_t,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, platform_mass,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_prs,
-        (prs_J_2_zz, prs_P_c_1_t, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
-                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
-                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
-                    prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_h_2_x, prs_h_2_y,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, prs_root_2_t, prs_size,),
+        (prs_J_2_in_spec2_zz, prs_P_c_1_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy,
+                    prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
+                    prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
+                    prs_base_point_y, prs_base_point_z, prs_branch_1, prs_h_2_in_spec2_x,
+                    prs_h_2_in_spec2_y, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
+                    prs_size_t,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_prs,
-        (prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
-                    prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-                    prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y,
-                    prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
-                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z,
-                    prs_root_2_t, prs_size,),
+        (prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+                    prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+                    prs_h_2_in_spec2_x, prs_h_2_in_spec2_y, prs_link1_mass, prs_link2_mass,
+                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+                    prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,),
                 ),
             ),
         ),
@@ -671,8 +677,9 @@ def _prepare(p):
         (prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x,
-                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,),
+                    prs_branch_1, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
+                    prs_size_t,),
                 ),
             ),
         ),
@@ -695,17 +702,19 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
             (
                 (_prs,
-        (prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
-                    prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-                    prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y,
-                    prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
-                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z,
-                    prs_root_2_t, prs_size,),
+        (prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+                    prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+                    prs_h_2_in_spec2_x, prs_h_2_in_spec2_y, prs_link1_mass, prs_link2_mass,
+                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+                    prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,),
                 ),
             ),
         ),
@@ -716,8 +725,8 @@ def _prepare(p):
         (prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x,
-                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t,),
+                    prs_branch_1, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size_t,),
                 ),
             ),
         ),
@@ -728,8 +737,9 @@ def _prepare(p):
         (prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x,
-                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,),
+                    prs_branch_1, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
+                    prs_size_t,),
                 ),
             ),
         ),
@@ -740,8 +750,9 @@ def _prepare(p):
         (prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
                     prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
                     prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x,
-                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,),
+                    prs_branch_1, prs_platform_joint_offset_x, prs_platform_point_x,
+                    prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
+                    prs_size_t,),
                 ),
             ),
         ),
@@ -759,41 +770,43 @@ def _prepare(p):
         (),
             (
                 (_prs,
-        (prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
-                    prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-                    prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y,
-                    prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
-                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z,
-                    prs_root_2_t, prs_size,),
+        (prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+                    prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+                    prs_h_2_in_spec2_x, prs_h_2_in_spec2_y, prs_link1_mass, prs_link2_mass,
+                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+                    prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
             (
                 (_prs,
-        (prs_b_r0_x, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
-                    prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-                    prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z,
-                    prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_1_x, prs_h_1_y,
-                    prs_h_2_x, prs_h_2_y, prs_link1_mass, prs_link2_mass,
+        (prs_b_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+                    prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+                    prs_h_1_in_spec0_x, prs_h_1_in_spec0_y, prs_h_2_in_spec2_x,
+                    prs_h_2_in_spec2_y, prs_link1_mass, prs_link2_mass,
                     prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
                     prs_platform_point_z, prs_potential_t, prs_potential_t_2, prs_potential_t_3,
-                    prs_root_2_t,),
+                    prs_root_2_t, prs_size_t,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_prs,
-        (inv_prs_root_2_t_2, inv_prs_size, prs_base_frame_xx, prs_base_frame_xy,
-                    prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
-                    prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
-                    prs_base_point_y, prs_base_point_z, prs_branch_1, prs_disc_1_t,
-                    prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-                    prs_platform_point_z, prs_root_2_t, prs_size,),
+        (inv_prs_root_2_t, inv_prs_size, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+                    prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+                    prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+                    prs_base_point_z, prs_branch_1, prs_platform_joint_offset_x,
+                    prs_platform_point_x, prs_platform_point_y, prs_platform_point_z,
+                    prs_root_2_t, prs_size, prs_size_t,),
                 ),
             ),
         ),
@@ -1296,9 +1309,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1355,356 +1369,383 @@ def _run_dynamics(m, X, V):
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
-    J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx
-    J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_10 = 2.0*J_star_t_9 + J_star_xx
-    J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_14 = 2.0*J_star_t_13 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        prs_J_2_zz, prs_P_c_1_t, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
-            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
-            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
-            prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x,
-            prs_h_2_y, prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
-            prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, prs_root_2_t,
-            prs_size,
+        prs_J_2_in_spec2_zz, prs_P_c_1_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy,
+            prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
+            prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
+            prs_base_point_y, prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+            prs_h_2_in_spec2_x, prs_h_2_in_spec2_y, prs_link1_mass, prs_link2_mass,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
+        )
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
-        # (prs-w_1) reciprocal vector 1
-        axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2
-        axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2
-        axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2
-        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2
-        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2
-        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2
-        # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
-        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
-        # (prs-w_1) reciprocal vector 1
-        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
-        prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t
-        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
-        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
-        # (prs-w_2) reciprocal vector 2
-        prs_w_2_t = inv_prs_v_2_t_2*prs_s_2
-        prs_w_2_t_2 = inv_prs_v_2_t_2*prs_c_2
-        # (prs-P_c_2) force that accelerates joint 2, per unit
-        prs_P_c_2_r0_x = prs_c_2*prs_h_2_y - prs_h_2_x*prs_s_2
-        # (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prs_d_Gamma_2_t = inv_prs_v_2_t_2*(prs_J_2_zz + prs_P_c_2_r0_x*prs_v_2_t)
-        prs__r0_x_2 = -prs_P_c_2_r0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
-        prs__r0_y_2 = prs_c_2*prs_d_Gamma_2_t - prs_P_c_2_r0_x*prs_s_2
-        # (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prs_d_Gamma_1_t = inv_prs_v_2_t_2*(prs_P_c_2_r0_x + prs_P_c_1_t*prs_v_2_t)
-        prs__r0_x_3 = -prs_P_c_1_t*prs_c_2 - prs_d_Gamma_1_t*prs_s_2
-        prs__r0_y_3 = prs_c_2*prs_d_Gamma_1_t - prs_P_c_1_t*prs_s_2
-        # (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prs_d_G_xx = prs__r0_x*prs__r0_x_3 - prs__r0_x_2*prs_w_2_t
-        prs_d_G_xy = prs__r0_x*prs__r0_y_3 - prs__r0_y_2*prs_w_2_t
-        prs_d_G_yx = prs__r0_x_2*prs_w_2_t_2 + prs__r0_x_3*prs__r0_y
-        prs_d_G_yy = prs__r0_y*prs__r0_y_3 + prs__r0_y_2*prs_w_2_t_2
-        # (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prs_d_c_in_base_x = (
-        -axis_x_prs_axes2_in_base_x*prs_d_G_xx - axis_y_prs_axes2_in_base_x*prs_d_G_yx
-        )
-        prs_d_c_in_base_y = (
-        -axis_x_prs_axes2_in_base_y*prs_d_G_xx - axis_y_prs_axes2_in_base_y*prs_d_G_yx
-        )
-        prs_d_c_in_base_x_2 = (
-        -axis_x_prs_axes2_in_base_x*prs_d_G_xy - axis_y_prs_axes2_in_base_x*prs_d_G_yy
-        )
-        prs_d_c_in_base_y_2 = (
-        -axis_x_prs_axes2_in_base_y*prs_d_G_xy - axis_y_prs_axes2_in_base_y*prs_d_G_yy
-        )
-        prs_d_c_in_base_x_3 = (
-        axis_x_prs_axes2_in_base_x*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_x*prs_d_c_in_base_x_2
-        )
-        prs_d_c_in_base_y_3 = (
-        axis_x_prs_axes2_in_base_y*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_x_2
-        )
-        prs_d_c_in_base_z = (
-        axis_x_prs_axes2_in_base_z*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_x_2
-        )
-        prs_d_c_in_base_y_4 = (
-        axis_x_prs_axes2_in_base_y*prs_d_c_in_base_y +
-            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_y_2
-        )
-        prs_d_c_in_base_z_2 = (
-        axis_x_prs_axes2_in_base_z*prs_d_c_in_base_y +
-            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_y_2
-        )
-        prs_d_c_in_base_z_3 = (
-        axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xx -
-            axis_y_prs_axes2_in_base_z*prs_d_G_yx) +
-            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xy -
-            axis_y_prs_axes2_in_base_z*prs_d_G_yy)
-        )
-        # (M_ta) coupling block of M
-        prs_M_ta_t = prs_d_c_in_base_y_3*prs_q_in_base_z
-        prs_M_ta_t_2 = prs_d_c_in_base_z*prs_q_in_base_y
-        prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2
-        prs_M_ta_t_4 = prs_d_c_in_base_x_3*prs_q_in_base_z - prs_d_c_in_base_z*prs_q_in_base_x
-        prs_M_ta_t_5 = prs_d_c_in_base_x_3*prs_q_in_base_y - prs_d_c_in_base_y_3*prs_q_in_base_x
-        prs_M_ta_t_6 = prs_d_c_in_base_y_4*prs_q_in_base_z - prs_d_c_in_base_z_2*prs_q_in_base_y
-        prs_M_ta_t_7 = prs_d_c_in_base_z_2*prs_q_in_base_x
-        prs_M_ta_t_8 = prs_M_ta_t - prs_M_ta_t_7
-        prs_M_ta_t_9 = prs_d_c_in_base_y_3*prs_q_in_base_y - prs_d_c_in_base_y_4*prs_q_in_base_x
-        prs_M_ta_t_10 = prs_d_c_in_base_z_2*prs_q_in_base_z - prs_d_c_in_base_z_3*prs_q_in_base_y
-        prs_M_ta_t_11 = prs_d_c_in_base_z*prs_q_in_base_z - prs_d_c_in_base_z_3*prs_q_in_base_x
-        prs_M_ta_t_12 = prs_M_ta_t_7 - prs_M_ta_t_2
-        # (M_aa) rotational block of M
-        prs_M_aa_t = prs_M_ta_t_6*prs_q_in_base_z - prs_M_ta_t_10*prs_q_in_base_y
-        prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_y
-        prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_in_base_y + prs_M_ta_t_9*prs_q_in_base_z
-        prs_M_aa_t_4 = prs_M_ta_t_4*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_x
-        prs_M_aa_t_5 = prs_M_ta_t_12*prs_q_in_base_x + prs_M_ta_t_5*prs_q_in_base_z
-        prs_M_aa_t_6 = prs_M_ta_t_5*prs_q_in_base_y - prs_M_ta_t_9*prs_q_in_base_x
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
-        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
-        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
-        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y
+        prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
+        prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
         prs_S_dot_x = prs_S_dot_t + t_dot_x
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
+        axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
+        axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2
+        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
+        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
+        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
+        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
+        inv_prs_v_2_t = 1.0/prs_v_2_t
+        prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y
+        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
+        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_x = axis_x_prs_axes2_x*prs_w_1_in_axes2_x + axis_y_prs_axes2_x*prs_w_1_in_axes2_y
+        prs_w_1_y = axis_x_prs_axes2_y*prs_w_1_in_axes2_x + axis_y_prs_axes2_y*prs_w_1_in_axes2_y
+        prs_w_1_z = axis_x_prs_axes2_z*prs_w_1_in_axes2_x + axis_y_prs_axes2_z*prs_w_1_in_axes2_y
+        # (prs-w_2) reciprocal vector 2
+        prs_w_2_t = inv_prs_v_2_t*prs_s_2
+        prs_w_2_in_axes2_y = -inv_prs_v_2_t*prs_c_2
         # (prs-qd_2) rate of joint 2
-        prs_qd_2 = (
-        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        prs_qd_2_t = (
+        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
+        # (prs-W_2) centripetal tensor of link 2
+        prs_W_2_t = prs_qd_2_t*prs_qd_2_t
         # (prs-u_1) centripetal acceleration of the connection point
         prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
         prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
         prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
-        # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2*prs_qd_2
-        # (prs-u_1) centripetal acceleration of the connection point
-        prs_u_1_tip_y = (
-        axis_y_prs_axes2_in_base_x*prs_u_1_x + axis_y_prs_axes2_in_base_y*prs_u_1_y +
-            axis_y_prs_axes2_in_base_z*prs_u_1_z
+        prs_u_1_in_axes2_y = (
+        axis_y_prs_axes2_x*prs_u_1_x + axis_y_prs_axes2_y*prs_u_1_y + axis_y_prs_axes2_z*prs_u_1_z
         )
-        prs_u_1_tip_z = (
+        prs_u_1_in_axes2_z = (
         prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y + prs_base_frame_zz*prs_u_1_z
         )
         # (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prs_rel_o_x = (
-        axis_x_prs_axes2_in_base_x*prs_u_1_x + axis_x_prs_axes2_in_base_y*prs_u_1_y +
-            axis_x_prs_axes2_in_base_z*prs_u_1_z + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2
+        prs_rel_o_in_axes2_x = (
+        axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z
+            + prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
-        # (prs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prs_qdd_2_o = inv_prs_v_2_t_2*(prs_rel_o_x*prs_s_2 - prs_c_2*prs_u_1_tip_y)
-        prs_qdd_2_o_t = prs_c_2*prs_rel_o_x + prs_qdd_2_o*prs_v_2_t + prs_s_2*prs_u_1_tip_y
-        # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prs_acc_2_o_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_2_o_t - prs_g_r0_y*prs_s_2
-        prs_acc_2_o_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_2_o_t*prs_s_2
-        # (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prs_mu_2_o_z = prs_acc_2_o_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2_o - prs_acc_2_o_x*prs_h_2_y
+        # (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        prs_qdd_1_o_t = inv_prs_v_2_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
+        prs_qdd_1_o = (
+        prs_c_2*prs_rel_o_in_axes2_x - prs_d_3_in_axes0_y*prs_qdd_1_o_t -
+            prs_s_2*prs_u_1_in_axes2_y
+        )
         # (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        prs_acc_1_o_x = -prs_g_r0_x - prs_qdd_2_o_t
+        prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x
+        # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prs_acc_2_o_in_axes2_x = (
+        prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
+        )
+        prs_acc_2_o_in_axes2_y = (
+        prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*prs_s_2
+        )
         # (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        prs_f_2_o_x = prs_acc_2_o_x*prs_link2_mass + prs_h_2_y*prs_qdd_2_o - prs_W_2_t*prs_h_2_x
-        prs_f_2_o_y = prs_acc_2_o_y*prs_link2_mass - prs_W_2_t*prs_h_2_y - prs_h_2_x*prs_qdd_2_o
+        prs_f_2_o_in_axes2_x = (
+        prs_acc_2_o_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_o_t -
+            prs_W_2_t*prs_h_2_in_spec2_x
+        )
+        prs_f_2_o_in_axes2_y = (
+        prs_acc_2_o_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
+            prs_h_2_in_spec2_x*prs_qdd_1_o_t
+        )
+        # (prs-P_c_2) force that accelerates joint 2, per unit
+        prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_s_2
+        # (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prs_mu_2_o_in_axes2_z = (
+        prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x - prs_J_2_in_spec2_zz*prs_qdd_1_o_t -
+            prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y
+        )
+        # (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+        prs_d_Gamma_2_t = (
+        inv_prs_v_2_t*(prs_J_2_in_spec2_zz + prs_P_c_2_in_axes0_x*prs_d_3_in_axes0_y)
+        )
+        prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
+        prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_2_t
         # (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        prs_T_1_o_x = prs_acc_1_o_x*prs_link1_mass - prs_c_2*prs_f_2_o_x - prs_f_2_o_y*prs_s_2
+        prs_T_1_o_in_axes0_x = (
+        prs_acc_1_o_in_axes0_x*prs_link1_mass + prs_c_2*prs_f_2_o_in_axes2_x -
+            prs_f_2_o_in_axes2_y*prs_s_2
+        )
+        # (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+        prs_d_Gamma_1_t = (
+        inv_prs_v_2_t*(prs_P_c_2_in_axes0_x + prs_P_c_1_in_axes0_x*prs_d_3_in_axes0_y)
+        )
+        prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*prs_c_2 - prs_d_Gamma_1_t*prs_s_2
+        prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_1_t
+        # (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_d_G_in_axes2_xx = (
+        prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_x - prs_d_Gamma_2_in_axes2_x*prs_w_2_t
+        )
+        prs_d_G_in_axes2_xy = (
+        prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_x - prs_d_Gamma_2_in_axes2_y*prs_w_2_t
+        )
+        prs_d_G_in_axes2_yx = (
+        prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_y + prs_d_Gamma_2_in_axes2_x*prs_w_2_in_axes2_y
+        )
+        prs_d_G_in_axes2_yy = (
+        prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y + prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y
+        )
         # (prs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prs_G_o_t = inv_prs_v_2_t_2*(prs_mu_2_o_z + prs_T_1_o_x*prs_v_2_t)
-        prs__r0_x_4 = -prs_G_o_t*prs_s_2 - prs_T_1_o_x*prs_c_2
-        prs__r0_y_4 = prs_G_o_t*prs_c_2 - prs_T_1_o_x*prs_s_2
+        prs_G_o_t = (
+        inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z + prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y)
+        )
+        prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2
+        prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2
+        # (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        prs_d_c_t = (
+        -axis_x_prs_axes2_x*prs_d_G_in_axes2_xx - axis_y_prs_axes2_x*prs_d_G_in_axes2_yx
+        )
+        prs_d_c_t_2 = (
+        -axis_x_prs_axes2_y*prs_d_G_in_axes2_xx - axis_y_prs_axes2_y*prs_d_G_in_axes2_yx
+        )
+        prs_d_c_t_3 = (
+        -axis_x_prs_axes2_x*prs_d_G_in_axes2_xy - axis_y_prs_axes2_x*prs_d_G_in_axes2_yy
+        )
+        prs_d_c_t_4 = (
+        -axis_x_prs_axes2_y*prs_d_G_in_axes2_xy - axis_y_prs_axes2_y*prs_d_G_in_axes2_yy
+        )
+        prs_d_c_xx = axis_x_prs_axes2_x*prs_d_c_t + axis_y_prs_axes2_x*prs_d_c_t_3
+        prs_d_c_xy = axis_x_prs_axes2_y*prs_d_c_t + axis_y_prs_axes2_y*prs_d_c_t_3
+        prs_d_c_xz = axis_x_prs_axes2_z*prs_d_c_t + axis_y_prs_axes2_z*prs_d_c_t_3
+        prs_d_c_yy = axis_x_prs_axes2_y*prs_d_c_t_2 + axis_y_prs_axes2_y*prs_d_c_t_4
+        prs_d_c_yz = axis_x_prs_axes2_z*prs_d_c_t_2 + axis_y_prs_axes2_z*prs_d_c_t_4
+        prs_d_c_zz = (
+        axis_x_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xx -
+            axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
+            axis_y_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
+            axis_y_prs_axes2_z*prs_d_G_in_axes2_yy)
+        )
         # (prs-U) velocity and gravity terms of the leg force
-        prs_U_in_base_x = (
-        axis_x_prs_axes2_in_base_x*prs__r0_x_4 + axis_y_prs_axes2_in_base_x*prs__r0_y_4
-        )
-        prs_U_in_base_y = (
-        axis_x_prs_axes2_in_base_y*prs__r0_x_4 + axis_y_prs_axes2_in_base_y*prs__r0_y_4
-        )
-        prs_U_in_base_z = (
-        axis_x_prs_axes2_in_base_z*prs__r0_x_4 + axis_y_prs_axes2_in_base_z*prs__r0_y_4
-        )
+        prs_U_x = axis_x_prs_axes2_x*prs_G_o_in_axes2_x + axis_y_prs_axes2_x*prs_G_o_in_axes2_y
+        prs_U_y = axis_x_prs_axes2_y*prs_G_o_in_axes2_x + axis_y_prs_axes2_y*prs_G_o_in_axes2_y
+        prs_U_z = axis_x_prs_axes2_z*prs_G_o_in_axes2_x + axis_y_prs_axes2_z*prs_G_o_in_axes2_y
+        # (M_ta) coupling block of M
+        prs_M_ta_t = prs_d_c_xy*prs_q_z
+        prs_M_ta_t_2 = prs_d_c_xz*prs_q_y
+        prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2
+        prs_M_ta_t_4 = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x
+        prs_M_ta_t_5 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x
+        prs_M_ta_t_6 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y
+        prs_M_ta_t_7 = prs_d_c_yz*prs_q_x
+        prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t
+        prs_M_ta_t_9 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x
+        prs_M_ta_t_10 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y
+        prs_M_ta_t_11 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z
+        prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7
+        # (M_aa) rotational block of M
+        prs_M_aa_t = prs_M_ta_t_10*prs_q_y - prs_M_ta_t_6*prs_q_z
+        prs_M_aa_t_2 = prs_M_ta_t_11*prs_q_y - prs_M_ta_t_8*prs_q_z
+        prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_y - prs_M_ta_t_9*prs_q_z
+        prs_M_aa_t_4 = prs_M_ta_t_11*prs_q_x + prs_M_ta_t_4*prs_q_z
+        prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x
+        prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y
         # (Z_a) rotational part of Z
-        prs_Z_a_t = prs_U_in_base_z*prs_q_in_base_y - prs_U_in_base_y*prs_q_in_base_z
-        prs_Z_a_t_2 = prs_U_in_base_x*prs_q_in_base_z - prs_U_in_base_z*prs_q_in_base_x
-        prs_Z_a_t_3 = prs_U_in_base_y*prs_q_in_base_x - prs_U_in_base_x*prs_q_in_base_y
-        # (prs-w_1) reciprocal vector 1
-        prs_w_1_in_base_x = (
-        axis_x_prs_axes2_in_base_x*prs__r0_x + axis_y_prs_axes2_in_base_x*prs__r0_y
-        )
-        prs_w_1_in_base_y = (
-        axis_x_prs_axes2_in_base_y*prs__r0_x + axis_y_prs_axes2_in_base_y*prs__r0_y
-        )
-        prs_w_1_in_base_z = (
-        axis_x_prs_axes2_in_base_z*prs__r0_x + axis_y_prs_axes2_in_base_z*prs__r0_y
-        )
+        prs_Z_a_t = prs_U_z*prs_q_y - prs_U_y*prs_q_z
+        prs_Z_a_t_2 = prs_U_x*prs_q_z - prs_U_z*prs_q_x
+        prs_Z_a_t_3 = prs_U_y*prs_q_x - prs_U_x*prs_q_y
         # (prs-H_a_1) moment of the column's unit force about the platform origin
-        prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z - prs_q_in_base_z*prs_w_1_in_base_y
-        prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x - prs_q_in_base_x*prs_w_1_in_base_z
-        prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y - prs_q_in_base_y*prs_w_1_in_base_x
+        prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y
+        prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z
+        prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x
         # (prs-Hk_a_1) moment of the column's unit force about the platform origin
-        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y - prs_base_frame_yz*prs_q_in_base_z
-        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z - prs_base_frame_zz*prs_q_in_base_x
-        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x - prs_base_frame_xz*prs_q_in_base_y
+        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z
+        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x
+        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
-            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
+            prs_root_2_t) & (abs(prs_v_2_t) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        prs_d_c_in_base_x_3, prs_d_c_in_base_y_3, prs_d_c_in_base_z, prs_d_c_in_base_y_4,
-            prs_d_c_in_base_z_2, prs_d_c_in_base_z_3, prs_M_ta_t_3, prs_M_ta_t_4,
-            prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9, prs_M_ta_t_10,
-            prs_M_ta_t_11, prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3,
-            prs_M_aa_t_4, prs_M_aa_t_5, prs_M_aa_t_6, prs_U_in_base_x, prs_U_in_base_y,
-            prs_U_in_base_z, prs_Z_a_t, prs_Z_a_t_2, prs_Z_a_t_3,
+        prs_d_c_xx, prs_d_c_xy, prs_d_c_xz, prs_d_c_yy, prs_d_c_yz, prs_d_c_zz, prs_M_ta_t_3,
+            -prs_M_ta_t_4, prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9,
+            prs_M_ta_t_10, prs_M_ta_t_11, prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2,
+            prs_M_aa_t_3, prs_M_aa_t_4, prs_M_aa_t_5, prs_M_aa_t_6, prs_U_x, prs_U_y, prs_U_z,
+            prs_Z_a_t, prs_Z_a_t_2, prs_Z_a_t_3,
         ))
-        out_H[_H_prs[0][leg]] = prs_w_1_in_base_x
-        out_H[_H_prs[1][leg]] = prs_w_1_in_base_y
-        out_H[_H_prs[2][leg]] = prs_w_1_in_base_z
+        # (prs-w_1) reciprocal vector 1
+        out_H[_H_prs[0][leg]] = prs_w_1_x
+        out_H[_H_prs[1][leg]] = prs_w_1_y
+        out_H[_H_prs[2][leg]] = prs_w_1_z
+        # (prs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prs[3][leg]] = prs_H_a_1_x
         out_H[_H_prs[4][leg]] = prs_H_a_1_y
         out_H[_H_prs[5][leg]] = prs_H_a_1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
         out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_prs[3][leg]] = prs_Hk_a_1_x
         out_Hk[_Hk_prs[4][leg]] = prs_Hk_a_1_y
         out_Hk[_Hk_prs[5][leg]] = prs_Hk_a_1_z
-        out_constraint_bias[_constraint_bias_prs[0][leg]] = prs_u_1_tip_z
+        # (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        out_constraint_bias[_constraint_bias_prs[0][leg]] = prs_u_1_in_axes2_z
     (
-    total_prs_xx, total_prs_xy, total_prs_xz, total_prs_yy, total_prs_yz, total_prs_zz,
-        total_prs_xx_2, total_prs_xy_2, total_prs_xz_2, total_prs_yx, total_prs_yy_2,
-        total_prs_yz_2, total_prs_zx, total_prs_zy, total_prs_zz_2, total_prs_xx_3,
-        total_prs_xy_3, total_prs_xz_3, total_prs_yy_3, total_prs_yz_3, total_prs_zz_3,
-        total_prs_x, total_prs_y, total_prs_z, total_prs_x_2, total_prs_y_2, total_prs_z_2,
+    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_prs_xy, M_ta_prs_xz,
+        M_ta_prs_yx, M_ta_yy, M_ta_prs_yz, M_ta_prs_zx, M_ta_prs_zy, M_ta_zz, M_aa_prs_xx,
+        M_aa_prs_xy, M_aa_prs_xz, M_aa_t, M_aa_prs_yz, M_aa_prs_zz, Z_t_prs_x, Z_t_prs_y,
+        Z_t_prs_z, Z_a_prs_x, Z_a_prs_y, Z_a_prs_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = platform_mass - total_prs_xx
-    M_tt_yy = platform_mass - total_prs_yy
-    M_tt_zz = platform_mass - total_prs_zz
+    M_tt_xx = platform_mass - M_tt_t
+    M_tt_yy = platform_mass - M_tt_t_4
+    M_tt_zz = platform_mass - M_tt_t_6
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_prs_xy_2
-    M_ta_xz = total_prs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_prs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_prs_yz_2
-    M_ta_zx = h_star_in_base_y + total_prs_zx
-    M_ta_zy = -h_star_in_base_x - total_prs_zy
+    M_ta_xy = M_ta_prs_xy + h_star_z
+    M_ta_xz = M_ta_prs_xz - h_star_y
+    M_ta_yx = M_ta_prs_yx - h_star_z
+    M_ta_yz = M_ta_prs_yz + h_star_x
+    M_ta_zx = M_ta_prs_zx + h_star_y
+    M_ta_zy = M_ta_prs_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_10 - total_prs_xx_3
-    M_aa_xy = J_star_t_11 + total_prs_xy_3
-    M_aa_xz = J_star_t_12 - total_prs_xz_3
-    M_aa_yy = J_star_t_14 - total_prs_yy_3
-    M_aa_yz = J_star_t_15 + total_prs_yz_3
-    M_aa_zz = J_star_t_17 - total_prs_zz_3
+    M_aa_xx = J_star_xx + M_aa_prs_xx
+    M_aa_xy = J_star_xy + M_aa_prs_xy
+    M_aa_xz = J_star_xz + M_aa_prs_xz
+    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_yz = J_star_yz + M_aa_prs_yz
+    M_aa_zz = J_star_zz + M_aa_prs_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prs_x
-    Z_t_y = Z_p_y + total_prs_y
-    Z_t_z = Z_p_z + total_prs_z
+    Z_t_x = Z_p_x + Z_t_prs_x
+    Z_t_y = Z_p_y + Z_t_prs_y
+    Z_t_z = Z_p_z + Z_t_prs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_prs_x_2
-    Z_a_y = Z_q_in_base_y + total_prs_y_2
-    Z_a_z = Z_q_in_base_z + total_prs_z_2
+    Z_a_x = Z_a_prs_x + Z_q_x
+    Z_a_y = Z_a_prs_y + Z_q_y
+    Z_a_z = Z_a_prs_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_prs_xy
-    out_M[6] = -total_prs_xy
-    out_M[2] = -total_prs_xz
-    out_M[12] = -total_prs_xz
+    out_M[1] = -M_tt_t_2
+    out_M[6] = -M_tt_t_2
+    out_M[2] = -M_tt_t_3
+    out_M[12] = -M_tt_t_3
     out_M[7] = M_tt_yy
-    out_M[8] = -total_prs_yz
-    out_M[13] = -total_prs_yz
+    out_M[8] = -M_tt_t_5
+    out_M[13] = -M_tt_t_5
     out_M[14] = M_tt_zz
-    out_M[3] = total_prs_xx_2
-    out_M[18] = total_prs_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_prs_yy_2
-    out_M[25] = -total_prs_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_prs_zz_2
-    out_M[32] = -total_prs_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1714,9 +1755,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -1728,8 +1771,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1769,227 +1813,225 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
-    J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx
-    J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_10 = 2.0*J_star_t_9 + J_star_xx
-    J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_14 = 2.0*J_star_t_13 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        prs_J_2_zz, prs_P_c_1_t, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
-            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
-            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
-            prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_h_2_x, prs_h_2_y,
-            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, prs_root_2_t, prs_size,
+        prs_J_2_in_spec2_zz, prs_P_c_1_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy,
+            prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
+            prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
+            prs_base_point_y, prs_base_point_z, prs_branch_1, prs_h_2_in_spec2_x,
+            prs_h_2_in_spec2_y, prs_platform_joint_offset_x, prs_platform_point_x,
+            prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
+        )
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
-        # (prs-w_1) reciprocal vector 1
-        axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2
-        axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2
-        axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2
-        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2
-        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2
-        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
-        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
-        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
-        prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t
-        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
-        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
+        inv_prs_v_2_t = 1.0/prs_v_2_t
+        prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y
+        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
+        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
         # (prs-w_2) reciprocal vector 2
-        prs_w_2_t = inv_prs_v_2_t_2*prs_s_2
-        prs_w_2_t_2 = inv_prs_v_2_t_2*prs_c_2
+        prs_w_2_t = inv_prs_v_2_t*prs_s_2
+        prs_w_2_in_axes2_y = -inv_prs_v_2_t*prs_c_2
         # (prs-P_c_2) force that accelerates joint 2, per unit
-        prs_P_c_2_r0_x = prs_c_2*prs_h_2_y - prs_h_2_x*prs_s_2
+        prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_s_2
         # (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prs_d_Gamma_2_t = inv_prs_v_2_t_2*(prs_J_2_zz + prs_P_c_2_r0_x*prs_v_2_t)
-        prs__r0_x_2 = -prs_P_c_2_r0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
-        prs__r0_y_2 = prs_c_2*prs_d_Gamma_2_t - prs_P_c_2_r0_x*prs_s_2
+        prs_d_Gamma_2_t = (
+        inv_prs_v_2_t*(prs_J_2_in_spec2_zz + prs_P_c_2_in_axes0_x*prs_d_3_in_axes0_y)
+        )
+        prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
+        prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_2_t
         # (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prs_d_Gamma_1_t = inv_prs_v_2_t_2*(prs_P_c_2_r0_x + prs_P_c_1_t*prs_v_2_t)
-        prs__r0_x_3 = -prs_P_c_1_t*prs_c_2 - prs_d_Gamma_1_t*prs_s_2
-        prs__r0_y_3 = prs_c_2*prs_d_Gamma_1_t - prs_P_c_1_t*prs_s_2
+        prs_d_Gamma_1_t = (
+        inv_prs_v_2_t*(prs_P_c_2_in_axes0_x + prs_P_c_1_in_axes0_x*prs_d_3_in_axes0_y)
+        )
+        prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*prs_c_2 - prs_d_Gamma_1_t*prs_s_2
+        prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_1_t
         # (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prs_d_G_xx = prs__r0_x*prs__r0_x_3 - prs__r0_x_2*prs_w_2_t
-        prs_d_G_xy = prs__r0_x*prs__r0_y_3 - prs__r0_y_2*prs_w_2_t
-        prs_d_G_yx = prs__r0_x_2*prs_w_2_t_2 + prs__r0_x_3*prs__r0_y
-        prs_d_G_yy = prs__r0_y*prs__r0_y_3 + prs__r0_y_2*prs_w_2_t_2
+        prs_d_G_in_axes2_xx = (
+        prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_x - prs_d_Gamma_2_in_axes2_x*prs_w_2_t
+        )
+        prs_d_G_in_axes2_xy = (
+        prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_x - prs_d_Gamma_2_in_axes2_y*prs_w_2_t
+        )
+        prs_d_G_in_axes2_yx = (
+        prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_y + prs_d_Gamma_2_in_axes2_x*prs_w_2_in_axes2_y
+        )
+        prs_d_G_in_axes2_yy = (
+        prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y + prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y
+        )
         # (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prs_d_c_in_base_x = (
-        -axis_x_prs_axes2_in_base_x*prs_d_G_xx - axis_y_prs_axes2_in_base_x*prs_d_G_yx
+        axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
+        axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
+        axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2
+        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
+        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
+        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
+        prs_d_c_t = (
+        -axis_x_prs_axes2_x*prs_d_G_in_axes2_xx - axis_y_prs_axes2_x*prs_d_G_in_axes2_yx
         )
-        prs_d_c_in_base_y = (
-        -axis_x_prs_axes2_in_base_y*prs_d_G_xx - axis_y_prs_axes2_in_base_y*prs_d_G_yx
+        prs_d_c_t_2 = (
+        -axis_x_prs_axes2_y*prs_d_G_in_axes2_xx - axis_y_prs_axes2_y*prs_d_G_in_axes2_yx
         )
-        prs_d_c_in_base_x_2 = (
-        -axis_x_prs_axes2_in_base_x*prs_d_G_xy - axis_y_prs_axes2_in_base_x*prs_d_G_yy
+        prs_d_c_t_3 = (
+        -axis_x_prs_axes2_x*prs_d_G_in_axes2_xy - axis_y_prs_axes2_x*prs_d_G_in_axes2_yy
         )
-        prs_d_c_in_base_y_2 = (
-        -axis_x_prs_axes2_in_base_y*prs_d_G_xy - axis_y_prs_axes2_in_base_y*prs_d_G_yy
+        prs_d_c_t_4 = (
+        -axis_x_prs_axes2_y*prs_d_G_in_axes2_xy - axis_y_prs_axes2_y*prs_d_G_in_axes2_yy
         )
-        prs_d_c_in_base_x_3 = (
-        axis_x_prs_axes2_in_base_x*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_x*prs_d_c_in_base_x_2
-        )
-        prs_d_c_in_base_y_3 = (
-        axis_x_prs_axes2_in_base_y*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_x_2
-        )
-        prs_d_c_in_base_z = (
-        axis_x_prs_axes2_in_base_z*prs_d_c_in_base_x +
-            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_x_2
-        )
-        prs_d_c_in_base_y_4 = (
-        axis_x_prs_axes2_in_base_y*prs_d_c_in_base_y +
-            axis_y_prs_axes2_in_base_y*prs_d_c_in_base_y_2
-        )
-        prs_d_c_in_base_z_2 = (
-        axis_x_prs_axes2_in_base_z*prs_d_c_in_base_y +
-            axis_y_prs_axes2_in_base_z*prs_d_c_in_base_y_2
-        )
-        prs_d_c_in_base_z_3 = (
-        axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xx -
-            axis_y_prs_axes2_in_base_z*prs_d_G_yx) +
-            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*prs_d_G_xy -
-            axis_y_prs_axes2_in_base_z*prs_d_G_yy)
+        prs_d_c_xx = axis_x_prs_axes2_x*prs_d_c_t + axis_y_prs_axes2_x*prs_d_c_t_3
+        prs_d_c_xy = axis_x_prs_axes2_y*prs_d_c_t + axis_y_prs_axes2_y*prs_d_c_t_3
+        prs_d_c_xz = axis_x_prs_axes2_z*prs_d_c_t + axis_y_prs_axes2_z*prs_d_c_t_3
+        prs_d_c_yy = axis_x_prs_axes2_y*prs_d_c_t_2 + axis_y_prs_axes2_y*prs_d_c_t_4
+        prs_d_c_yz = axis_x_prs_axes2_z*prs_d_c_t_2 + axis_y_prs_axes2_z*prs_d_c_t_4
+        prs_d_c_zz = (
+        axis_x_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xx -
+            axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
+            axis_y_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
+            axis_y_prs_axes2_z*prs_d_G_in_axes2_yy)
         )
         # (M_ta) coupling block of M
-        prs_M_ta_t = prs_d_c_in_base_y_3*prs_q_in_base_z
-        prs_M_ta_t_2 = prs_d_c_in_base_z*prs_q_in_base_y
+        prs_M_ta_t = prs_d_c_xy*prs_q_z
+        prs_M_ta_t_2 = prs_d_c_xz*prs_q_y
         prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2
-        prs_M_ta_t_4 = prs_d_c_in_base_x_3*prs_q_in_base_z - prs_d_c_in_base_z*prs_q_in_base_x
-        prs_M_ta_t_5 = prs_d_c_in_base_x_3*prs_q_in_base_y - prs_d_c_in_base_y_3*prs_q_in_base_x
-        prs_M_ta_t_6 = prs_d_c_in_base_y_4*prs_q_in_base_z - prs_d_c_in_base_z_2*prs_q_in_base_y
-        prs_M_ta_t_7 = prs_d_c_in_base_z_2*prs_q_in_base_x
-        prs_M_ta_t_8 = prs_M_ta_t - prs_M_ta_t_7
-        prs_M_ta_t_9 = prs_d_c_in_base_y_3*prs_q_in_base_y - prs_d_c_in_base_y_4*prs_q_in_base_x
-        prs_M_ta_t_10 = prs_d_c_in_base_z_2*prs_q_in_base_z - prs_d_c_in_base_z_3*prs_q_in_base_y
-        prs_M_ta_t_11 = prs_d_c_in_base_z*prs_q_in_base_z - prs_d_c_in_base_z_3*prs_q_in_base_x
-        prs_M_ta_t_12 = prs_M_ta_t_7 - prs_M_ta_t_2
+        prs_M_ta_t_4 = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x
+        prs_M_ta_t_5 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x
+        prs_M_ta_t_6 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y
+        prs_M_ta_t_7 = prs_d_c_yz*prs_q_x
+        prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t
+        prs_M_ta_t_9 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x
+        prs_M_ta_t_10 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y
+        prs_M_ta_t_11 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z
+        prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7
         # (M_aa) rotational block of M
-        prs_M_aa_t = prs_M_ta_t_6*prs_q_in_base_z - prs_M_ta_t_10*prs_q_in_base_y
-        prs_M_aa_t_2 = prs_M_ta_t_8*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_y
-        prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_in_base_y + prs_M_ta_t_9*prs_q_in_base_z
-        prs_M_aa_t_4 = prs_M_ta_t_4*prs_q_in_base_z - prs_M_ta_t_11*prs_q_in_base_x
-        prs_M_aa_t_5 = prs_M_ta_t_12*prs_q_in_base_x + prs_M_ta_t_5*prs_q_in_base_z
-        prs_M_aa_t_6 = prs_M_ta_t_5*prs_q_in_base_y - prs_M_ta_t_9*prs_q_in_base_x
+        prs_M_aa_t = prs_M_ta_t_10*prs_q_y - prs_M_ta_t_6*prs_q_z
+        prs_M_aa_t_2 = prs_M_ta_t_11*prs_q_y - prs_M_ta_t_8*prs_q_z
+        prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_y - prs_M_ta_t_9*prs_q_z
+        prs_M_aa_t_4 = prs_M_ta_t_11*prs_q_x + prs_M_ta_t_4*prs_q_z
+        prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x
+        prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
-            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
+            prs_root_2_t) & (abs(prs_v_2_t) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        prs_d_c_in_base_x_3, prs_d_c_in_base_y_3, prs_d_c_in_base_z, prs_d_c_in_base_y_4,
-            prs_d_c_in_base_z_2, prs_d_c_in_base_z_3, prs_M_ta_t_3, prs_M_ta_t_4,
-            prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9, prs_M_ta_t_10,
-            prs_M_ta_t_11, prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3,
-            prs_M_aa_t_4, prs_M_aa_t_5, prs_M_aa_t_6,
+        prs_d_c_xx, prs_d_c_xy, prs_d_c_xz, prs_d_c_yy, prs_d_c_yz, prs_d_c_zz, prs_M_ta_t_3,
+            -prs_M_ta_t_4, prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9,
+            prs_M_ta_t_10, prs_M_ta_t_11, prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2,
+            prs_M_aa_t_3, prs_M_aa_t_4, prs_M_aa_t_5, prs_M_aa_t_6,
         ))
     (
-    total_prs_xx, total_prs_xy, total_prs_xz, total_prs_yy, total_prs_yz, total_prs_zz,
-        total_prs_xx_2, total_prs_xy_2, total_prs_xz_2, total_prs_yx, total_prs_yy_2,
-        total_prs_yz_2, total_prs_zx, total_prs_zy, total_prs_zz_2, total_prs_xx_3,
-        total_prs_xy_3, total_prs_xz_3, total_prs_yy_3, total_prs_yz_3, total_prs_zz_3,
+    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_prs_xy, M_ta_prs_xz,
+        M_ta_prs_yx, M_ta_yy, M_ta_prs_yz, M_ta_prs_zx, M_ta_prs_zy, M_ta_zz, M_aa_prs_xx,
+        M_aa_prs_xy, M_aa_prs_xz, M_aa_t, M_aa_prs_yz, M_aa_prs_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = platform_mass - total_prs_xx
-    M_tt_yy = platform_mass - total_prs_yy
-    M_tt_zz = platform_mass - total_prs_zz
+    M_tt_xx = platform_mass - M_tt_t
+    M_tt_yy = platform_mass - M_tt_t_4
+    M_tt_zz = platform_mass - M_tt_t_6
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_prs_xy_2
-    M_ta_xz = total_prs_xz_2 - h_star_in_base_y
-    M_ta_yx = total_prs_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_prs_yz_2
-    M_ta_zx = h_star_in_base_y + total_prs_zx
-    M_ta_zy = -h_star_in_base_x - total_prs_zy
+    M_ta_xy = M_ta_prs_xy + h_star_z
+    M_ta_xz = M_ta_prs_xz - h_star_y
+    M_ta_yx = M_ta_prs_yx - h_star_z
+    M_ta_yz = M_ta_prs_yz + h_star_x
+    M_ta_zx = M_ta_prs_zx + h_star_y
+    M_ta_zy = M_ta_prs_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_10 - total_prs_xx_3
-    M_aa_xy = J_star_t_11 + total_prs_xy_3
-    M_aa_xz = J_star_t_12 - total_prs_xz_3
-    M_aa_yy = J_star_t_14 - total_prs_yy_3
-    M_aa_yz = J_star_t_15 + total_prs_yz_3
-    M_aa_zz = J_star_t_17 - total_prs_zz_3
+    M_aa_xx = J_star_xx + M_aa_prs_xx
+    M_aa_xy = J_star_xy + M_aa_prs_xy
+    M_aa_xz = J_star_xz + M_aa_prs_xz
+    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_yz = J_star_yz + M_aa_prs_yz
+    M_aa_zz = J_star_zz + M_aa_prs_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_prs_xy
-    out_M[6] = -total_prs_xy
-    out_M[2] = -total_prs_xz
-    out_M[12] = -total_prs_xz
+    out_M[1] = -M_tt_t_2
+    out_M[6] = -M_tt_t_2
+    out_M[2] = -M_tt_t_3
+    out_M[12] = -M_tt_t_3
     out_M[7] = M_tt_yy
-    out_M[8] = -total_prs_yz
-    out_M[13] = -total_prs_yz
+    out_M[8] = -M_tt_t_5
+    out_M[13] = -M_tt_t_5
     out_M[14] = M_tt_zz
-    out_M[3] = total_prs_xx_2
-    out_M[18] = total_prs_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_prs_yy_2
-    out_M[25] = -total_prs_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_prs_zz_2
-    out_M[32] = -total_prs_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2007,8 +2049,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2061,173 +2104,205 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
-            prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
-            prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y, prs_link1_mass,
-            prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
-            prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
+        prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+            prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+            prs_h_2_in_spec2_x, prs_h_2_in_spec2_y, prs_link1_mass, prs_link2_mass,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
+        )
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
-        # (prs-w_1) reciprocal vector 1
-        axis_y_prs_axes2_in_base_x = -prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2
-        axis_y_prs_axes2_in_base_y = -prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2
-        axis_y_prs_axes2_in_base_z = -prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2
-        axis_x_prs_axes2_in_base_x = prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2
-        axis_x_prs_axes2_in_base_y = prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2
-        axis_x_prs_axes2_in_base_z = prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2
-        # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
-        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
-        # (prs-w_1) reciprocal vector 1
-        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
-        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
-        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
-        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y
+        prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
+        prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
         prs_S_dot_x = prs_S_dot_t + t_dot_x
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
         # (prs-qd_2) rate of joint 2
-        prs_qd_2 = (
-        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        inv_prs_v_2_t = 1.0/prs_v_2_t
+        prs_qd_2_t = (
+        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
+        # (prs-W_2) centripetal tensor of link 2
+        prs_W_2_t = prs_qd_2_t*prs_qd_2_t
         # (prs-u_1) centripetal acceleration of the connection point
+        axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
+        axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
+        axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2
         prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
         prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
         prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
-        # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2*prs_qd_2
-        # (prs-u_1) centripetal acceleration of the connection point
-        prs_u_1_tip_y = (
-        axis_y_prs_axes2_in_base_x*prs_u_1_x + axis_y_prs_axes2_in_base_y*prs_u_1_y +
-            axis_y_prs_axes2_in_base_z*prs_u_1_z
+        prs_u_1_in_axes2_y = (
+        axis_y_prs_axes2_x*prs_u_1_x + axis_y_prs_axes2_y*prs_u_1_y + axis_y_prs_axes2_z*prs_u_1_z
         )
         # (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        prs_rel_o_x = (
-        axis_x_prs_axes2_in_base_x*prs_u_1_x + axis_x_prs_axes2_in_base_y*prs_u_1_y +
-            axis_x_prs_axes2_in_base_z*prs_u_1_z + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2
+        axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
+        axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
+        axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
+        prs_rel_o_in_axes2_x = (
+        axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z
+            + prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
-        # (prs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prs_qdd_2_o = inv_prs_v_2_t_2*(prs_rel_o_x*prs_s_2 - prs_c_2*prs_u_1_tip_y)
-        prs_qdd_2_o_t = prs_c_2*prs_rel_o_x + prs_qdd_2_o*prs_v_2_t + prs_s_2*prs_u_1_tip_y
-        # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        prs_acc_2_o_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_2_o_t - prs_g_r0_y*prs_s_2
-        prs_acc_2_o_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_2_o_t*prs_s_2
-        # (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        prs_mu_2_o_z = prs_acc_2_o_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2_o - prs_acc_2_o_x*prs_h_2_y
+        # (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
+        prs_qdd_1_o_t = inv_prs_v_2_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
+        prs_qdd_1_o = (
+        prs_c_2*prs_rel_o_in_axes2_x - prs_d_3_in_axes0_y*prs_qdd_1_o_t -
+            prs_s_2*prs_u_1_in_axes2_y
+        )
         # (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
-        prs_acc_1_o_x = -prs_g_r0_x - prs_qdd_2_o_t
+        prs_acc_1_o_in_axes0_x = prs_qdd_1_o - prs_g_in_axes0_x
+        # (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+        prs_acc_2_o_in_axes2_x = (
+        prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
+        )
+        prs_acc_2_o_in_axes2_y = (
+        prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*prs_s_2
+        )
         # (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        prs_f_2_o_x = prs_acc_2_o_x*prs_link2_mass + prs_h_2_y*prs_qdd_2_o - prs_W_2_t*prs_h_2_x
-        prs_f_2_o_y = prs_acc_2_o_y*prs_link2_mass - prs_W_2_t*prs_h_2_y - prs_h_2_x*prs_qdd_2_o
+        prs_f_2_o_in_axes2_x = (
+        prs_acc_2_o_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_o_t -
+            prs_W_2_t*prs_h_2_in_spec2_x
+        )
+        prs_f_2_o_in_axes2_y = (
+        prs_acc_2_o_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
+            prs_h_2_in_spec2_x*prs_qdd_1_o_t
+        )
+        # (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+        prs_mu_2_o_in_axes2_z = (
+        prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x - prs_J_2_in_spec2_zz*prs_qdd_1_o_t -
+            prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y
+        )
         # (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
-        prs_T_1_o_x = prs_acc_1_o_x*prs_link1_mass - prs_c_2*prs_f_2_o_x - prs_f_2_o_y*prs_s_2
+        prs_T_1_o_in_axes0_x = (
+        prs_acc_1_o_in_axes0_x*prs_link1_mass + prs_c_2*prs_f_2_o_in_axes2_x -
+            prs_f_2_o_in_axes2_y*prs_s_2
+        )
         # (prs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        prs_G_o_t = inv_prs_v_2_t_2*(prs_mu_2_o_z + prs_T_1_o_x*prs_v_2_t)
-        prs__r0_x = -prs_G_o_t*prs_s_2 - prs_T_1_o_x*prs_c_2
-        prs__r0_y = prs_G_o_t*prs_c_2 - prs_T_1_o_x*prs_s_2
+        prs_G_o_t = (
+        inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z + prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y)
+        )
+        prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2
+        prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2
         # (prs-U) velocity and gravity terms of the leg force
-        prs_U_in_base_x = (
-        axis_x_prs_axes2_in_base_x*prs__r0_x + axis_y_prs_axes2_in_base_x*prs__r0_y
-        )
-        prs_U_in_base_y = (
-        axis_x_prs_axes2_in_base_y*prs__r0_x + axis_y_prs_axes2_in_base_y*prs__r0_y
-        )
-        prs_U_in_base_z = (
-        axis_x_prs_axes2_in_base_z*prs__r0_x + axis_y_prs_axes2_in_base_z*prs__r0_y
-        )
+        prs_U_x = axis_x_prs_axes2_x*prs_G_o_in_axes2_x + axis_y_prs_axes2_x*prs_G_o_in_axes2_y
+        prs_U_y = axis_x_prs_axes2_y*prs_G_o_in_axes2_x + axis_y_prs_axes2_y*prs_G_o_in_axes2_y
+        prs_U_z = axis_x_prs_axes2_z*prs_G_o_in_axes2_x + axis_y_prs_axes2_z*prs_G_o_in_axes2_y
         # (Z_a) rotational part of Z
-        prs_Z_a_t = prs_U_in_base_z*prs_q_in_base_y - prs_U_in_base_y*prs_q_in_base_z
-        prs_Z_a_t_2 = prs_U_in_base_x*prs_q_in_base_z - prs_U_in_base_z*prs_q_in_base_x
-        prs_Z_a_t_3 = prs_U_in_base_y*prs_q_in_base_x - prs_U_in_base_x*prs_q_in_base_y
+        prs_Z_a_t = prs_U_z*prs_q_y - prs_U_y*prs_q_z
+        prs_Z_a_t_2 = prs_U_x*prs_q_z - prs_U_z*prs_q_x
+        prs_Z_a_t_3 = prs_U_y*prs_q_x - prs_U_x*prs_q_y
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
-            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
+            prs_root_2_t) & (abs(prs_v_2_t) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        prs_U_in_base_x, prs_U_in_base_y, prs_U_in_base_z, prs_Z_a_t, prs_Z_a_t_2,
-            prs_Z_a_t_3,
+        prs_U_x, prs_U_y, prs_U_z, prs_Z_a_t, prs_Z_a_t_2, prs_Z_a_t_3,
         ))
-    total_prs_x, total_prs_y, total_prs_z, total_prs_x_2, total_prs_y_2, total_prs_z_2 = sums
+    Z_t_prs_x, Z_t_prs_y, Z_t_prs_z, Z_a_prs_x, Z_a_prs_y, Z_a_prs_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_prs_x
-    Z_t_y = Z_p_y + total_prs_y
-    Z_t_z = Z_p_z + total_prs_z
+    Z_t_x = Z_p_x + Z_t_prs_x
+    Z_t_y = Z_p_y + Z_t_prs_y
+    Z_t_z = Z_p_z + Z_t_prs_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_prs_x_2
-    Z_a_y = Z_q_in_base_y + total_prs_y_2
-    Z_a_z = Z_q_in_base_z + total_prs_z_2
+    Z_a_x = Z_a_prs_x + Z_q_x
+    Z_a_y = Z_a_prs_y + Z_q_y
+    Z_a_z = Z_a_prs_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2280,76 +2355,79 @@ def _run_H(m, X):
         prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
             prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
             prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
-            prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, prs_root_2_t, prs_size,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
+        )
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
         prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t
-        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
-        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
-        prs_w_1_in_base_x = (
-        prs__r0_x*(prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2) +
-            prs__r0_y*(-prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2)
+        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
+        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_x = (
+        prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2) +
+            prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2)
         )
-        prs_w_1_in_base_y = (
-        prs__r0_x*(prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2) +
-            prs__r0_y*(-prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2)
+        prs_w_1_y = (
+        prs_w_1_in_axes2_x*(prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2) +
+            prs_w_1_in_axes2_y*(prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2)
         )
-        prs_w_1_in_base_z = (
-        prs__r0_x*(prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2) +
-            prs__r0_y*(-prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2)
+        prs_w_1_z = (
+        prs_w_1_in_axes2_x*(prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2) +
+            prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2)
         )
         # (prs-H_a_1) moment of the column's unit force about the platform origin
-        prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z - prs_q_in_base_z*prs_w_1_in_base_y
-        prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x - prs_q_in_base_x*prs_w_1_in_base_z
-        prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y - prs_q_in_base_y*prs_w_1_in_base_x
+        prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y
+        prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z
+        prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
-            prs_root_2_t) & (abs(-prs_v_2_t) > _TOLERANCE * prs_size))
+            prs_root_2_t) & (abs(prs_v_2_t) > _TOLERANCE * prs_size))
         )
-        out_H[_H_prs[0][leg]] = prs_w_1_in_base_x
-        out_H[_H_prs[1][leg]] = prs_w_1_in_base_y
-        out_H[_H_prs[2][leg]] = prs_w_1_in_base_z
+        # (prs-w_1) reciprocal vector 1
+        out_H[_H_prs[0][leg]] = prs_w_1_x
+        out_H[_H_prs[1][leg]] = prs_w_1_y
+        out_H[_H_prs[2][leg]] = prs_w_1_z
+        # (prs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prs[3][leg]] = prs_H_a_1_x
         out_H[_H_prs[4][leg]] = prs_H_a_1_y
         out_H[_H_prs[5][leg]] = prs_H_a_1_z
@@ -2395,23 +2473,24 @@ def _run_Hk(m, X):
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
             prs_platform_point_y, prs_platform_point_z,
         ) = k
-        # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
-        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y - prs_base_frame_yz*prs_q_in_base_z
-        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z - prs_base_frame_zz*prs_q_in_base_x
-        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x - prs_base_frame_xz*prs_q_in_base_y
+        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z
+        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x
+        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
         out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_prs[3][leg]] = prs_Hk_a_1_x
         out_Hk[_Hk_prs[4][leg]] = prs_Hk_a_1_y
         out_Hk[_Hk_prs[5][leg]] = prs_Hk_a_1_z
@@ -2464,27 +2543,26 @@ def _run_constraint_bias(m, X, V):
         prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, prs_platform_point_x,
             prs_platform_point_y, prs_platform_point_z,
         ) = k
-        # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        # (prs-u_1) centripetal acceleration of the connection point
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        # (prs-S_dot) velocity of the connection point
-        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
-        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
-        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
-        # (prs-u_1) centripetal acceleration of the connection point
-        prs_u_1_tip_z = (
-        prs_base_frame_xz*(omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2) +
-            prs_base_frame_yz*(omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3) +
-            prs_base_frame_zz*(omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t)
+        prs_u_1_t = omega_y*prs_q_z - omega_z*prs_q_y
+        prs_u_1_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
+        prs_u_1_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
+        prs_u_1_in_axes2_z = (
+        prs_base_frame_xz*(omega_y*prs_u_1_t_3 - omega_z*prs_u_1_t_2) +
+            prs_base_frame_yz*(omega_z*prs_u_1_t - omega_x*prs_u_1_t_3) +
+            prs_base_frame_zz*(omega_x*prs_u_1_t_2 - omega_y*prs_u_1_t)
         )
-        out_constraint_bias[_constraint_bias_prs[0][leg]] = prs_u_1_tip_z
+        # (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        out_constraint_bias[_constraint_bias_prs[0][leg]] = prs_u_1_in_axes2_z
     return ok, (out_constraint_bias,)
 
 
@@ -2493,8 +2571,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2561,231 +2640,269 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz +
-        alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) -
+        h_star_x*(f_p_t_2 + f_p_t_3)
     )
     f_p_y = (
-    a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz -
-        alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) -
+        h_star_y*(f_p_t + f_p_t_3)
     )
     f_p_z = (
-    a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz +
-        alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) -
+        h_star_z*(f_p_t + f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
-            prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
-            prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y, prs_link1_mass,
-            prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
-            prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
+        prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+            prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+            prs_h_2_in_spec2_x, prs_h_2_in_spec2_y, prs_link1_mass, prs_link2_mass,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
+        )
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
-        # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
-        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
-        # (prs-w_1) reciprocal vector 1
-        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
-        prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t
-        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
-        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
-        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
-        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
-        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y
+        prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
+        prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
         prs_S_dot_x = prs_S_dot_t + t_dot_x
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
+        inv_prs_v_2_t = 1.0/prs_v_2_t
+        prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y
+        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
+        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_t_2 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y
+        prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x
+        prs_w_1_x = prs_base_frame_xx*prs_w_1_t_2 + prs_base_frame_xy*prs_w_1_t_3
+        prs_w_1_y = prs_base_frame_yx*prs_w_1_t_2 + prs_base_frame_yy*prs_w_1_t_3
+        prs_w_1_z = prs_base_frame_zx*prs_w_1_t_2 + prs_base_frame_zy*prs_w_1_t_3
         # (prs-qd_2) rate of joint 2
-        prs_qd_2 = (
-        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        prs_qd_2_t = (
+        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2*prs_qd_2
-        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
-        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y - prs_base_frame_yz*prs_q_in_base_z
-        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z - prs_base_frame_zz*prs_q_in_base_x
-        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x - prs_base_frame_xz*prs_q_in_base_y
+        prs_W_2_t = prs_qd_2_t*prs_qd_2_t
         # (prs-a_p) acceleration of the connection point without its centripetal part
-        prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y
-        prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z
-        prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x
+        prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y
+        prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z
+        prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x
         # (prs-S_ddot) acceleration of the connection point
         prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
         prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
         prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
-        prs_S_ddot_r0_x = (
+        prs_S_ddot_t = (
         prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
             prs_S_ddot_z*prs_base_frame_zx
         )
-        prs_S_ddot_r0_y = (
+        prs_S_ddot_t_2 = (
         prs_S_ddot_x*prs_base_frame_xy + prs_S_ddot_y*prs_base_frame_yy +
             prs_S_ddot_z*prs_base_frame_zy
         )
-        prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2
+        prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2
         # (prs-rel) acceleration of the connection point left to the joint accelerations
-        prs_rel_x = (
-        prs_S_ddot_r0_y*prs_s_2 + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 -
-            prs_S_ddot_r0_x*prs_c_2
+        prs_rel_in_axes2_x = (
+        prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
         # (prs-qdd_1) acceleration of joint 1
-        prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2)
-        prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x + prs_qdd_2*prs_v_2_t
-        # (prs-acc_2) acceleration of the reference point of link 2, less gravity
-        prs_acc_2_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_1_t - prs_g_r0_y*prs_s_2
-        prs_acc_2_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_1_t*prs_s_2
-        # (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prs_mu_2_z = prs_acc_2_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2 - prs_acc_2_x*prs_h_2_y
+        prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
+        prs_qdd_1 = (
+        prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
+            prs_d_3_in_axes0_y*prs_qdd_1_t
+        )
         # (prs-acc_1) acceleration of the reference point of link 1, less gravity
-        prs_acc_1_x = -prs_g_r0_x - prs_qdd_1_t
+        prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x
+        # (prs-acc_2) acceleration of the reference point of link 2, less gravity
+        prs_acc_2_in_axes2_x = (
+        prs_c_2*prs_qdd_1 - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
+        )
+        prs_acc_2_in_axes2_y = (
+        prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1*prs_s_2
+        )
         # (prs-f_2) inertia force of link 2 less its weight
-        prs_f_2_x = prs_acc_2_x*prs_link2_mass + prs_h_2_y*prs_qdd_2 - prs_W_2_t*prs_h_2_x
-        prs_f_2_y = prs_acc_2_y*prs_link2_mass - prs_W_2_t*prs_h_2_y - prs_h_2_x*prs_qdd_2
+        prs_f_2_in_axes2_x = (
+        prs_acc_2_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_t -
+            prs_W_2_t*prs_h_2_in_spec2_x
+        )
+        prs_f_2_in_axes2_y = (
+        prs_acc_2_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
+            prs_h_2_in_spec2_x*prs_qdd_1_t
+        )
+        # (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prs_mu_2_in_axes2_z = (
+        prs_acc_2_in_axes2_y*prs_h_2_in_spec2_x - prs_J_2_in_spec2_zz*prs_qdd_1_t -
+            prs_acc_2_in_axes2_x*prs_h_2_in_spec2_y
+        )
         # (prs-T_1) inertia force of the links from 1 outwards, the last link left out
-        prs_T_1_x = prs_acc_1_x*prs_link1_mass - prs_c_2*prs_f_2_x - prs_f_2_y*prs_s_2
+        prs_T_1_in_axes0_x = (
+        prs_acc_1_in_axes0_x*prs_link1_mass + prs_c_2*prs_f_2_in_axes2_x -
+            prs_f_2_in_axes2_y*prs_s_2
+        )
         # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prs_G_t = inv_prs_v_2_t_2*(prs_mu_2_z + prs_T_1_x*prs_v_2_t)
-        prs__r0_x_2 = -prs_G_t*prs_s_2 - prs_T_1_x*prs_c_2
-        prs__r0_y_2 = prs_G_t*prs_c_2 - prs_T_1_x*prs_s_2
+        prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z + prs_T_1_in_axes0_x*prs_d_3_in_axes0_y)
+        prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2
+        prs_G_in_axes2_y = -prs_G_t*prs_c_2 - prs_T_1_in_axes0_x*prs_s_2
         # (prs-c) leg force on the platform without actuation and without the mass at the connection point
-        prs_c_r0_x = prs__r0_x_2*prs_c_2 + prs__r0_y_2*prs_s_2
-        prs_c_r0_y = prs__r0_y_2*prs_c_2 - prs__r0_x_2*prs_s_2
-        prs_c_in_base_x = prs_base_frame_xx*prs_c_r0_x + prs_base_frame_xy*prs_c_r0_y
-        prs_c_in_base_y = prs_base_frame_yx*prs_c_r0_x + prs_base_frame_yy*prs_c_r0_y
-        prs_c_in_base_z = prs_base_frame_zx*prs_c_r0_x + prs_base_frame_zy*prs_c_r0_y
+        prs_c_t = prs_G_in_axes2_y*prs_s_2 - prs_G_in_axes2_x*prs_c_2
+        prs_c_t_2 = -prs_G_in_axes2_x*prs_s_2 - prs_G_in_axes2_y*prs_c_2
+        prs_c_x = prs_base_frame_xx*prs_c_t + prs_base_frame_xy*prs_c_t_2
+        prs_c_y = prs_base_frame_yx*prs_c_t + prs_base_frame_yy*prs_c_t_2
+        prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2
         # (R_a) moment that actuators and external wrench must give
-        prs_R_a_t = prs_c_in_base_z*prs_q_in_base_y - prs_c_in_base_y*prs_q_in_base_z
-        prs_R_a_t_2 = prs_c_in_base_x*prs_q_in_base_z - prs_c_in_base_z*prs_q_in_base_x
-        prs_R_a_t_3 = prs_c_in_base_y*prs_q_in_base_x - prs_c_in_base_x*prs_q_in_base_y
-        # (prs-w_1) reciprocal vector 1
-        prs_w_1_r0_x = -prs__r0_x*prs_c_2 - prs__r0_y*prs_s_2
-        prs_w_1_r0_y = prs__r0_x*prs_s_2 - prs__r0_y*prs_c_2
-        prs_w_1_in_base_x = prs_base_frame_xx*prs_w_1_r0_x + prs_base_frame_xy*prs_w_1_r0_y
-        prs_w_1_in_base_y = prs_base_frame_yx*prs_w_1_r0_x + prs_base_frame_yy*prs_w_1_r0_y
-        prs_w_1_in_base_z = prs_base_frame_zx*prs_w_1_r0_x + prs_base_frame_zy*prs_w_1_r0_y
+        prs_R_a_t = prs_c_y*prs_q_z - prs_c_z*prs_q_y
+        prs_R_a_t_2 = prs_c_z*prs_q_x - prs_c_x*prs_q_z
+        prs_R_a_t_3 = prs_c_x*prs_q_y - prs_c_y*prs_q_x
         # (prs-H_a_1) moment of the column's unit force about the platform origin
-        prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z - prs_q_in_base_z*prs_w_1_in_base_y
-        prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x - prs_q_in_base_x*prs_w_1_in_base_z
-        prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y - prs_q_in_base_y*prs_w_1_in_base_x
+        prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y
+        prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z
+        prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
+        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z
+        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x
+        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
-            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
+            prs_root_2_t) & (abs(prs_v_2_t) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
-        prs_c_in_base_x, prs_c_in_base_y, prs_c_in_base_z, prs_R_a_t, prs_R_a_t_2,
-            prs_R_a_t_3,
+        prs_c_x, prs_c_y, prs_c_z, prs_R_a_t, prs_R_a_t_2, prs_R_a_t_3,
         ))
-        out_H[_H_prs[0][leg]] = prs_w_1_in_base_x
-        out_H[_H_prs[1][leg]] = prs_w_1_in_base_y
-        out_H[_H_prs[2][leg]] = prs_w_1_in_base_z
+        # (prs-w_1) reciprocal vector 1
+        out_H[_H_prs[0][leg]] = prs_w_1_x
+        out_H[_H_prs[1][leg]] = prs_w_1_y
+        out_H[_H_prs[2][leg]] = prs_w_1_z
+        # (prs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prs[3][leg]] = prs_H_a_1_x
         out_H[_H_prs[4][leg]] = prs_H_a_1_y
         out_H[_H_prs[5][leg]] = prs_H_a_1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
         out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_prs[3][leg]] = prs_Hk_a_1_x
         out_Hk[_Hk_prs[4][leg]] = prs_Hk_a_1_y
         out_Hk[_Hk_prs[5][leg]] = prs_Hk_a_1_z
-    total_prs_x, total_prs_y, total_prs_z, total_prs_x_2, total_prs_y_2, total_prs_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_prs_x, R_a_prs_y, R_a_prs_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_prs_x
-    R_t_y = f_p_y - total_prs_y
-    R_t_z = f_p_z - total_prs_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_prs_x_2
-    R_a_y = mu_p_in_base_y - total_prs_y_2
-    R_a_z = mu_p_in_base_z - total_prs_z_2
+    R_a_x = R_a_prs_x + mu_p_x
+    R_a_y = R_a_prs_y + mu_p_y
+    R_a_z = R_a_prs_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -2839,8 +2956,8 @@ def _run_inverse_kinematics(m, X):
         prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
             prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
             prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
-            prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, prs_root_2_t,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
         prs_S_x = (
@@ -2855,39 +2972,39 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
             prs_base_point_z
         )
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        prs_q_1 = prs_px_1 + prs_q_1_t
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
+        prs_q_1 = prs_S_in_axes0_x - prs_q_1_t
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
-        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_q_1_t*prs_q_1_t)
         # (prs-q_2) displacement of joint 2
+        prs_q_2_t = 1.0/(sqrt(prs_rho2_2))
         prs_q_2 = (
-        atan2(inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x,
-            -inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t)
+        atan2(prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_q_2_t,
+            prs_platform_joint_offset_x*prs_q_1_t*prs_q_2_t)
         )
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
             prs_root_2_t))
         )
+        # (prs-q_1) displacement of joint 1
         out_q[_q_prs[0][leg]] = prs_q_1
+        # (prs-q_2) displacement of joint 2
         out_q[_q_prs[1][leg]] = prs_q_2
     return ok, (out_q,)
 
@@ -2951,68 +3068,70 @@ def _run_joint_rates(m, X, V):
         prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
             prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
             prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
-            prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, prs_root_2_t, prs_size,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
-        # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = (
-        inv_prs_root_2*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_q_1_t
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
         )
         # (prs-S_dot) velocity of the connection point
-        prs_S_dot_x = t_dot_x + omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
-        prs_S_dot_y = t_dot_y + omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
-        prs_S_dot_z = t_dot_z + omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
-        # (prs-qd_2) rate of joint 2
-        prs_qd_2 = (
-        (prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
-            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_t
+        prs_S_dot_x = t_dot_x + omega_y*prs_q_z - omega_z*prs_q_y
+        prs_S_dot_y = t_dot_y + omega_z*prs_q_x - omega_x*prs_q_z
+        prs_S_dot_z = t_dot_z + omega_x*prs_q_y - omega_y*prs_q_x
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_v_2_t_2 = (
+        -prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_v_2_t*prs_x_2_in_axes0_x
         )
-        prs_qd_2_t = (
+        # (prs-qd_1) rate of joint 1
+        prs_qd_1_t = (
+        (prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_t_2
+        )
+        prs_qd_1 = (
         prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
             prs_S_dot_z*prs_base_frame_zx -
-            inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_2
+            prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_1_t*prs_v_2_t
         )
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
-            prs_root_2_t) & (abs(-prs_v_2_t) > _TOLERANCE * prs_size))
+            prs_root_2_t) & (abs(prs_v_2_t_2) > _TOLERANCE * prs_size))
         )
-        out_qd[_qd_prs[0][leg]] = prs_qd_2_t
-        out_qd[_qd_prs[1][leg]] = -prs_qd_2
+        # (prs-qd_1) rate of joint 1
+        out_qd[_qd_prs[0][leg]] = prs_qd_1
+        # (prs-qd_2) rate of joint 2
+        out_qd[_qd_prs[1][leg]] = -prs_qd_1_t
     return ok, (out_qd,)
 
 
@@ -3088,97 +3207,99 @@ def _run_joint_accelerations(m, X, V, A):
         prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
             prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
             prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
-            prs_disc_1_t, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
-            prs_platform_point_z, prs_root_2_t, prs_size,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
+        )
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
-        # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = prs_c_2*prs_platform_joint_offset_x
-        # (prs-w_1) reciprocal vector 1
-        inv_prs_v_2_t_2 = 1.0/prs_v_2_t
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
-        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
-        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
-        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y
+        prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
+        prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
         prs_S_dot_x = prs_S_dot_t + t_dot_x
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
         # (prs-qd_2) rate of joint 2
-        prs_qd_2 = (
-        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        inv_prs_v_2_t = 1.0/prs_v_2_t
+        prs_qd_2_t = (
+        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-a_p) acceleration of the connection point without its centripetal part
-        prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y
-        prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z
-        prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x
+        prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y
+        prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z
+        prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x
         # (prs-S_ddot) acceleration of the connection point
         prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
         prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
         prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
-        prs_S_ddot_r0_x = (
+        prs_S_ddot_t = (
         prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
             prs_S_ddot_z*prs_base_frame_zx
         )
-        prs_S_ddot_r0_y = (
+        prs_S_ddot_t_2 = (
         prs_S_ddot_x*prs_base_frame_xy + prs_S_ddot_y*prs_base_frame_yy +
             prs_S_ddot_z*prs_base_frame_zy
         )
-        prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2
+        prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2
         # (prs-rel) acceleration of the connection point left to the joint accelerations
-        prs_rel_x = (
-        prs_S_ddot_r0_y*prs_s_2 + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 -
-            prs_S_ddot_r0_x*prs_c_2
+        prs_rel_in_axes2_x = (
+        prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
         # (prs-qdd_1) acceleration of joint 1
-        prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2)
-        prs_qdd_1_t = (
-        prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x +
-            prs_platform_joint_offset_x*prs_qdd_2*prs_s_2
+        prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
+        prs_qdd_1 = (
+        prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
+            prs_platform_joint_offset_x*prs_qdd_1_t*prs_s_2
         )
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
-            prs_root_2_t) & (abs(-prs_v_2_t) > _TOLERANCE * prs_size))
+            prs_root_2_t) & (abs(prs_v_2_t) > _TOLERANCE * prs_size))
         )
-        out_qdd[_qdd_prs[0][leg]] = -prs_qdd_1_t
-        out_qdd[_qdd_prs[1][leg]] = -prs_qdd_2
+        # (prs-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_prs[0][leg]] = prs_qdd_1
+        # (prs-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_prs[1][leg]] = -prs_qdd_1_t
     return ok, (out_qdd,)
 
 
@@ -3241,11 +3362,11 @@ def _run_constraints(m, X):
         t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
             prs_base_point_z
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        out_constraints[_constraints_prs[0][leg]] = prs_disc_1_t_2
+        # (prs-phi_c1) distance by which the leg misses the platform, along a direction left out
+        out_constraints[_constraints_prs[0][leg]] = prs_S_in_axes0_z
     return ok, (out_constraints,)
 
 
@@ -3320,136 +3441,159 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        prs_J_2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
-            prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
-            prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_2_x, prs_h_2_y, prs_link1_mass,
-            prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
-            prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size,
+        prs_J_2_in_spec2_zz, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+            prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+            prs_h_2_in_spec2_x, prs_h_2_in_spec2_y, prs_link1_mass, prs_link2_mass,
+            prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+            prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
+        )
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
-        # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = prs_platform_joint_offset_x*prs_s_2
-        prs_v_2_t_2 = prs_c_2*prs_platform_joint_offset_x
-        # (prs-w_1) reciprocal vector 1
-        inv_prs_v_2_t_2 = 1.0/prs_v_2_t_2
-        prs_w_1_t = inv_prs_v_2_t_2*prs_v_2_t
-        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
-        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
-        prs_S_dot_t = omega_y*prs_q_in_base_z - omega_z*prs_q_in_base_y
-        prs_S_dot_t_2 = omega_z*prs_q_in_base_x - omega_x*prs_q_in_base_z
-        prs_S_dot_t_3 = omega_x*prs_q_in_base_y - omega_y*prs_q_in_base_x
+        prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y
+        prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z
+        prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x
         prs_S_dot_x = prs_S_dot_t + t_dot_x
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
+        # (prs-v_2) velocity of the connection point per rate of joint 2
+        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        # (prs-w_1) reciprocal vector 1
+        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
+        inv_prs_v_2_t = 1.0/prs_v_2_t
+        prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y
+        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
+        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_t_2 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y
+        prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x
+        prs_w_1_x = prs_base_frame_xx*prs_w_1_t_2 + prs_base_frame_xy*prs_w_1_t_3
+        prs_w_1_y = prs_base_frame_yx*prs_w_1_t_2 + prs_base_frame_yy*prs_w_1_t_3
+        prs_w_1_z = prs_base_frame_zx*prs_w_1_t_2 + prs_base_frame_zy*prs_w_1_t_3
         # (prs-qd_2) rate of joint 2
-        prs_qd_2 = (
-        inv_prs_v_2_t_2*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        prs_qd_2_t = (
+        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2*prs_qd_2
+        prs_W_2_t = prs_qd_2_t*prs_qd_2_t
         # (prs-a_p) acceleration of the connection point without its centripetal part
-        prs_a_p_x = t_ddot_x + alpha_y*prs_q_in_base_z - alpha_z*prs_q_in_base_y
-        prs_a_p_y = t_ddot_y + alpha_z*prs_q_in_base_x - alpha_x*prs_q_in_base_z
-        prs_a_p_z = t_ddot_z + alpha_x*prs_q_in_base_y - alpha_y*prs_q_in_base_x
+        prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y
+        prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z
+        prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x
         # (prs-S_ddot) acceleration of the connection point
         prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2
         prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3
         prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t
-        prs_S_ddot_r0_x = (
+        prs_S_ddot_t = (
         prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx +
             prs_S_ddot_z*prs_base_frame_zx
         )
-        prs_S_ddot_r0_y = (
+        prs_S_ddot_t_2 = (
         prs_S_ddot_x*prs_base_frame_xy + prs_S_ddot_y*prs_base_frame_yy +
             prs_S_ddot_z*prs_base_frame_zy
         )
-        prs_S_ddot_r1_y = -prs_S_ddot_r0_x*prs_s_2 - prs_S_ddot_r0_y*prs_c_2
+        prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2
         # (prs-rel) acceleration of the connection point left to the joint accelerations
-        prs_rel_x = (
-        prs_S_ddot_r0_y*prs_s_2 + prs_platform_joint_offset_x*prs_qd_2*prs_qd_2 -
-            prs_S_ddot_r0_x*prs_c_2
+        prs_rel_in_axes2_x = (
+        prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
         # (prs-qdd_1) acceleration of joint 1
-        prs_qdd_2 = inv_prs_v_2_t_2*(prs_rel_x*prs_s_2 - prs_S_ddot_r1_y*prs_c_2)
-        prs_qdd_1_t = prs_S_ddot_r1_y*prs_s_2 + prs_c_2*prs_rel_x + prs_qdd_2*prs_v_2_t
-        # (prs-acc_2) acceleration of the reference point of link 2, less gravity
-        prs_acc_2_x = prs_c_2*prs_g_r0_x + prs_c_2*prs_qdd_1_t - prs_g_r0_y*prs_s_2
-        prs_acc_2_y = prs_c_2*prs_g_r0_y + prs_g_r0_x*prs_s_2 + prs_qdd_1_t*prs_s_2
-        # (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        prs_mu_2_z = prs_acc_2_y*prs_h_2_x - prs_J_2_zz*prs_qdd_2 - prs_acc_2_x*prs_h_2_y
+        prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
+        prs_qdd_1 = (
+        prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
+            prs_d_3_in_axes0_y*prs_qdd_1_t
+        )
         # (prs-acc_1) acceleration of the reference point of link 1, less gravity
-        prs_acc_1_x = -prs_g_r0_x - prs_qdd_1_t
+        prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x
+        # (prs-acc_2) acceleration of the reference point of link 2, less gravity
+        prs_acc_2_in_axes2_x = (
+        prs_c_2*prs_qdd_1 - prs_c_2*prs_g_in_axes0_x - prs_g_in_axes0_y*prs_s_2
+        )
+        prs_acc_2_in_axes2_y = (
+        prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y - prs_qdd_1*prs_s_2
+        )
         # (prs-f_2) inertia force of link 2 less its weight
-        prs_f_2_x = prs_acc_2_x*prs_link2_mass + prs_h_2_y*prs_qdd_2 - prs_W_2_t*prs_h_2_x
-        prs_f_2_y = prs_acc_2_y*prs_link2_mass - prs_W_2_t*prs_h_2_y - prs_h_2_x*prs_qdd_2
+        prs_f_2_in_axes2_x = (
+        prs_acc_2_in_axes2_x*prs_link2_mass + prs_h_2_in_spec2_y*prs_qdd_1_t -
+            prs_W_2_t*prs_h_2_in_spec2_x
+        )
+        prs_f_2_in_axes2_y = (
+        prs_acc_2_in_axes2_y*prs_link2_mass - prs_W_2_t*prs_h_2_in_spec2_y -
+            prs_h_2_in_spec2_x*prs_qdd_1_t
+        )
+        # (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points
+        prs_mu_2_in_axes2_z = (
+        prs_acc_2_in_axes2_y*prs_h_2_in_spec2_x - prs_J_2_in_spec2_zz*prs_qdd_1_t -
+            prs_acc_2_in_axes2_x*prs_h_2_in_spec2_y
+        )
         # (prs-T_1) inertia force of the links from 1 outwards, the last link left out
-        prs_T_1_x = prs_acc_1_x*prs_link1_mass - prs_c_2*prs_f_2_x - prs_f_2_y*prs_s_2
+        prs_T_1_in_axes0_x = (
+        prs_acc_1_in_axes0_x*prs_link1_mass + prs_c_2*prs_f_2_in_axes2_x -
+            prs_f_2_in_axes2_y*prs_s_2
+        )
         # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prs_G_t = inv_prs_v_2_t_2*(prs_mu_2_z + prs_T_1_x*prs_v_2_t)
-        prs__r0_x_2 = -prs_G_t*prs_s_2 - prs_T_1_x*prs_c_2
-        prs__r0_y_2 = prs_G_t*prs_c_2 - prs_T_1_x*prs_s_2
+        prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z + prs_T_1_in_axes0_x*prs_d_3_in_axes0_y)
+        prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2
+        prs_G_in_axes2_y = -prs_G_t*prs_c_2 - prs_T_1_in_axes0_x*prs_s_2
         # (prs-c) leg force on the platform without actuation and without the mass at the connection point
-        prs_c_r0_x = prs__r0_x_2*prs_c_2 + prs__r0_y_2*prs_s_2
-        prs_c_r0_y = prs__r0_y_2*prs_c_2 - prs__r0_x_2*prs_s_2
-        prs_c_in_base_x = prs_base_frame_xx*prs_c_r0_x + prs_base_frame_xy*prs_c_r0_y
-        prs_c_in_base_y = prs_base_frame_yx*prs_c_r0_x + prs_base_frame_yy*prs_c_r0_y
-        prs_c_in_base_z = prs_base_frame_zx*prs_c_r0_x + prs_base_frame_zy*prs_c_r0_y
-        # (prs-w_1) reciprocal vector 1
-        prs_w_1_r0_x = -prs__r0_x*prs_c_2 - prs__r0_y*prs_s_2
-        prs_w_1_r0_y = prs__r0_x*prs_s_2 - prs__r0_y*prs_c_2
-        prs_w_1_in_base_x = prs_base_frame_xx*prs_w_1_r0_x + prs_base_frame_xy*prs_w_1_r0_y
-        prs_w_1_in_base_y = prs_base_frame_yx*prs_w_1_r0_x + prs_base_frame_yy*prs_w_1_r0_y
-        prs_w_1_in_base_z = prs_base_frame_zx*prs_w_1_r0_x + prs_base_frame_zy*prs_w_1_r0_y
+        prs_c_t = prs_G_in_axes2_y*prs_s_2 - prs_G_in_axes2_x*prs_c_2
+        prs_c_t_2 = -prs_G_in_axes2_x*prs_s_2 - prs_G_in_axes2_y*prs_c_2
+        prs_c_x = prs_base_frame_xx*prs_c_t + prs_base_frame_xy*prs_c_t_2
+        prs_c_y = prs_base_frame_yx*prs_c_t + prs_base_frame_yy*prs_c_t_2
+        prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
-            prs_root_2_t) & (abs(-prs_v_2_t_2) > _TOLERANCE * prs_size))
+            prs_root_2_t) & (abs(prs_v_2_t) > _TOLERANCE * prs_size))
         )
-        out_leg_force[_leg_force_prs[0][leg]] = prs_c_in_base_x
-        out_leg_force[_leg_force_prs[1][leg]] = prs_c_in_base_y
-        out_leg_force[_leg_force_prs[2][leg]] = prs_c_in_base_z
-        out_drive[_drive_prs[0][leg]] = prs_w_1_in_base_x
-        out_drive[_drive_prs[1][leg]] = prs_w_1_in_base_y
-        out_drive[_drive_prs[2][leg]] = prs_w_1_in_base_z
+        # (prs-c) leg force on the platform without actuation and without the mass at the connection point
+        out_leg_force[_leg_force_prs[0][leg]] = prs_c_x
+        out_leg_force[_leg_force_prs[1][leg]] = prs_c_y
+        out_leg_force[_leg_force_prs[2][leg]] = prs_c_z
+        # (prs-w_1) reciprocal vector 1
+        out_drive[_drive_prs[0][leg]] = prs_w_1_x
+        out_drive[_drive_prs[1][leg]] = prs_w_1_y
+        out_drive[_drive_prs[2][leg]] = prs_w_1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_constraint_direction[_constraint_direction_prs[0][leg]] = prs_base_frame_xz
         out_constraint_direction[_constraint_direction_prs[1][leg]] = prs_base_frame_yz
         out_constraint_direction[_constraint_direction_prs[2][leg]] = prs_base_frame_zz
@@ -3460,7 +3604,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3500,20 +3647,22 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + platform_mass*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + platform_mass*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + platform_mass*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        platform_mass*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        prs_b_r0_x, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz, prs_base_frame_yx,
-            prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx, prs_base_frame_zy,
-            prs_base_frame_zz, prs_base_point_x, prs_base_point_y, prs_base_point_z, prs_branch_1,
-            prs_disc_1_t, prs_g_r0_x, prs_g_r0_y, prs_h_1_x, prs_h_1_y, prs_h_2_x, prs_h_2_y,
+        prs_b_in_axes0_x, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+            prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+            prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+            prs_base_point_z, prs_branch_1, prs_g_in_axes0_x, prs_g_in_axes0_y,
+            prs_h_1_in_spec0_x, prs_h_1_in_spec0_y, prs_h_2_in_spec2_x, prs_h_2_in_spec2_y,
             prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x, prs_platform_point_x,
             prs_platform_point_y, prs_platform_point_z, prs_potential_t, prs_potential_t_2,
-            prs_potential_t_3, prs_root_2_t,
+            prs_potential_t_3, prs_root_2_t, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
         prs_S_x = (
@@ -3528,39 +3677,38 @@ def _run_potential(m, X):
         t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z -
             prs_base_point_z
         )
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        prs_q_1 = prs_px_1 + prs_q_1_t
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-q_1) displacement of joint 1
+        prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
+        prs_q_1 = prs_S_in_axes0_x - prs_q_1_t
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_q_1_t*prs_q_1_t)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (potential) potential energy
-        prs_potential_t_4 = prs_b_r0_x + prs_q_1
+        prs_potential_t_4 = prs_b_in_axes0_x + prs_q_1
         prs_potential_t_5 = (
-        prs_potential_t_3 + prs_g_r0_x*(prs_h_1_x + prs_link1_mass*prs_potential_t_4 +
-            prs_link2_mass*prs_potential_t_4 - prs_c_2*prs_h_2_x - prs_h_2_y*prs_s_2) +
-            prs_g_r0_y*(prs_h_1_y + prs_potential_t + prs_potential_t_2 + prs_h_2_x*prs_s_2 -
-            prs_c_2*prs_h_2_y)
+        prs_potential_t_3 + prs_g_in_axes0_x*(prs_h_1_in_spec0_x + prs_c_2*prs_h_2_in_spec2_x +
+            prs_link1_mass*prs_potential_t_4 + prs_link2_mass*prs_potential_t_4 -
+            prs_h_2_in_spec2_y*prs_s_2) + prs_g_in_axes0_y*(prs_h_1_in_spec0_y + prs_potential_t +
+            prs_potential_t_2 + prs_c_2*prs_h_2_in_spec2_y + prs_h_2_in_spec2_x*prs_s_2)
         )
         ok = (
         ok & m.every(leg, (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE *
@@ -3569,9 +3717,10 @@ def _run_potential(m, X):
         sums = m.added(sums, leg, (
         prs_potential_t_5,
         ))
-    total_prs, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_prs
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3581,7 +3730,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3625,121 +3774,126 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_prs_root_2_t_2, inv_prs_size, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+        inv_prs_root_2_t, inv_prs_size, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
             prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
             prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
-            prs_base_point_z, prs_branch_1, prs_disc_1_t, prs_platform_joint_offset_x,
-            prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, prs_root_2_t,
-            prs_size,
+            prs_base_point_z, prs_branch_1, prs_platform_joint_offset_x, prs_platform_point_x,
+            prs_platform_point_y, prs_platform_point_z, prs_root_2_t, prs_size, prs_size_t,
         ) = k
         # (prs-S) from the base point to the connection point
-        prs_q_in_base_x = (
+        prs_q_x = (
         R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
         )
-        prs_q_in_base_y = (
+        prs_q_y = (
         R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
         )
-        prs_q_in_base_z = (
+        prs_q_z = (
         R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
         )
-        prs_S_x = prs_q_in_base_x + t_x - prs_base_point_x
-        prs_S_y = prs_q_in_base_y + t_y - prs_base_point_y
-        prs_S_z = prs_q_in_base_z + t_z - prs_base_point_z
-        # (prs-px_1) component along axis 1
-        prs_px_1 = (
+        prs_S_x = prs_q_x + t_x - prs_base_point_x
+        prs_S_y = prs_q_y + t_y - prs_base_point_y
+        prs_S_z = prs_q_z + t_z - prs_base_point_z
+        prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        # (prs-disc_1) discriminant of the distance equation
-        prs_disc_1_t_2 = (
+        prs_S_in_axes0_z = (
         prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
-        prs_disc_1_t_3 = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
-        prs_disc_1 = (
-        prs_disc_1_t + prs_disc_1_t_2*prs_disc_1_t_2 + prs_px_1*prs_px_1 - prs_disc_1_t_3
-        )
-        # (prs-q_1) displacement of joint 1
-        prs_q_1_t = prs_branch_1*sqrt(prs_disc_1)
-        # (prs-S) from the base point to the connection point
-        prs_S_r0_y = (
+        prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
         )
+        # (prs-disc_1) discriminant of the distance equation
+        prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
+        prs_disc_1 = (
+        prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
+            prs_disc_1_t
+        )
+        # (prs-x_2) from the origin of joint 2 to the connection point
+        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_disc_1_t*(prs_S_r0_y*prs_S_r0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = (
+        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
+        )
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prs_root_2 = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = inv_prs_root_2*prs_platform_joint_offset_x*prs_q_1_t
+        prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
+        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
-        prs_s_2 = inv_prs_root_2*prs_S_r0_y*prs_platform_joint_offset_x
+        prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
         prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t
-        prs__r0_x = -prs_c_2 - prs_s_2*prs_w_1_t
-        prs__r0_y = prs_c_2*prs_w_1_t - prs_s_2
-        prs_w_1_in_base_x = (
-        prs__r0_x*(prs_base_frame_xy*prs_s_2 - prs_base_frame_xx*prs_c_2) +
-            prs__r0_y*(-prs_base_frame_xx*prs_s_2 - prs_base_frame_xy*prs_c_2)
+        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
+        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_x = (
+        prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2) +
+            prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2)
         )
-        prs_w_1_in_base_y = (
-        prs__r0_x*(prs_base_frame_yy*prs_s_2 - prs_base_frame_yx*prs_c_2) +
-            prs__r0_y*(-prs_base_frame_yx*prs_s_2 - prs_base_frame_yy*prs_c_2)
+        prs_w_1_y = (
+        prs_w_1_in_axes2_x*(prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2) +
+            prs_w_1_in_axes2_y*(prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2)
         )
-        prs_w_1_in_base_z = (
-        prs__r0_x*(prs_base_frame_zy*prs_s_2 - prs_base_frame_zx*prs_c_2) +
-            prs__r0_y*(-prs_base_frame_zx*prs_s_2 - prs_base_frame_zy*prs_c_2)
+        prs_w_1_z = (
+        prs_w_1_in_axes2_x*(prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2) +
+            prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2)
+        )
+        # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        prs_pivot_size = abs(prs_rho2_2)
+        prs_pivot_size_2 = abs(prs_v_2_t)
+        prs_least_pivots = (
+        least(sqrt(inv_prs_root_2_t*prs_pivot_size), inv_prs_size*prs_pivot_size_2)
         )
         # (prs-H_a_1) moment of the column's unit force about the platform origin
-        prs_H_a_1_x = prs_q_in_base_y*prs_w_1_in_base_z - prs_q_in_base_z*prs_w_1_in_base_y
-        prs_H_a_1_y = prs_q_in_base_z*prs_w_1_in_base_x - prs_q_in_base_x*prs_w_1_in_base_z
-        prs_H_a_1_z = prs_q_in_base_x*prs_w_1_in_base_y - prs_q_in_base_y*prs_w_1_in_base_x
+        prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y
+        prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z
+        prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x
         # (prs-Hk_a_1) moment of the column's unit force about the platform origin
-        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_in_base_y - prs_base_frame_yz*prs_q_in_base_z
-        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_in_base_z - prs_base_frame_zz*prs_q_in_base_x
-        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_in_base_x - prs_base_frame_xz*prs_q_in_base_y
+        prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z
+        prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x
+        prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y
         # (spread) rms distance of the platform points from their centroid
-        prs_spread_t = b_c_x - prs_platform_point_x
-        prs_spread_t_2 = b_c_y - prs_platform_point_y
-        prs_spread_t_3 = b_c_z - prs_platform_point_z
+        prs_spread_t = b_c_in_platform_x - prs_platform_point_x
+        prs_spread_t_2 = b_c_in_platform_y - prs_platform_point_y
+        prs_spread_t_3 = b_c_in_platform_z - prs_platform_point_z
         prs_spread_t_4 = (
         prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 + prs_spread_t_3*prs_spread_t_3
-        )
-        # (prs-root_2) amplitude: off the manifold the nearest angle is taken
-        prs_pivot_size = abs(prs_rho2_2)
-        # (prs-w_1) reciprocal vector 1
-        prs_pivot_size_2 = abs(prs_v_2_t)
-        # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        prs_least_pivots = (
-        least(sqrt(inv_prs_root_2_t_2*prs_pivot_size), inv_prs_size*prs_pivot_size_2)
         )
         reached = reached & m.every(leg, (prs_disc_1 >= 0.0))
         clear = (
         clear & m.every(leg, (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(-prs_v_2_t) > _TOLERANCE * prs_size))
+            (abs(prs_v_2_t) > _TOLERANCE * prs_size))
         )
         sums = m.added(sums, leg, (
         prs_spread_t_4,
         ))
-        out_H[_H_prs[0][leg]] = prs_w_1_in_base_x
-        out_H[_H_prs[1][leg]] = prs_w_1_in_base_y
-        out_H[_H_prs[2][leg]] = prs_w_1_in_base_z
+        # (prs-w_1) reciprocal vector 1
+        out_H[_H_prs[0][leg]] = prs_w_1_x
+        out_H[_H_prs[1][leg]] = prs_w_1_y
+        out_H[_H_prs[2][leg]] = prs_w_1_z
+        # (prs-H_a_1) moment of the column's unit force about the platform origin
         out_H[_H_prs[3][leg]] = prs_H_a_1_x
         out_H[_H_prs[4][leg]] = prs_H_a_1_y
         out_H[_H_prs[5][leg]] = prs_H_a_1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_prs[0][leg]] = prs_base_frame_xz
         out_Hk[_Hk_prs[1][leg]] = prs_base_frame_yz
         out_Hk[_Hk_prs[2][leg]] = prs_base_frame_zz
+        # (prs-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_prs[3][leg]] = prs_Hk_a_1_x
         out_Hk[_Hk_prs[4][leg]] = prs_Hk_a_1_y
         out_Hk[_Hk_prs[5][leg]] = prs_Hk_a_1_z
+        # (prs-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_prs[0][leg]] = prs_least_pivots
         out_reach[_reach_prs[0][leg]] = prs_disc_1
-    total_prs, = sums
+    spread_prs, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_prs)
+    spread = sqrt(spread_prs)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 

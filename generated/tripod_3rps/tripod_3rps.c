@@ -470,9 +470,9 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_rps_x = 0;
-    real total_rps_y = 0;
-    real total_rps_z = 0;
+    real b_c_rps_in_platform_x = 0;
+    real b_c_rps_in_platform_y = 0;
+    real b_c_rps_in_platform_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -487,26 +487,29 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = platform_centre_of_mass_x*platform_mass;
-    const real h_star_y = platform_centre_of_mass_y*platform_mass;
-    const real h_star_z = platform_centre_of_mass_z*platform_mass;
+    const real h_star_in_platform_x = platform_centre_of_mass_x*platform_mass;
+    const real h_star_in_platform_y = platform_centre_of_mass_y*platform_mass;
+    const real h_star_in_platform_z = platform_centre_of_mass_z*platform_mass;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
     const real J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3;
-    const real J_star_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4);
-    const real J_star_xy = platform_inertia_xy -
+    const real J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t -
+        J_star_t_4);
+    const real J_star_in_platform_xy = platform_inertia_xy -
         platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass;
-    const real J_star_xz = platform_inertia_xz -
+    const real J_star_in_platform_xz = platform_inertia_xz -
         platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass;
-    const real J_star_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4);
-    const real J_star_yz = platform_inertia_yz -
+    const real J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 -
+        J_star_t_4);
+    const real J_star_in_platform_yz = platform_inertia_yz -
         platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
-    const real J_star_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4);
-    const real J_star_t_5 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 -
+        J_star_t_4);
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_6 = R(0.5)*J_star_t_5;
-    const real J_star_t_7 = J_star_xx - J_star_zz;
+    const real J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_8 = R(0.5)*J_star_t_7;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*platform_mass;
@@ -516,23 +519,23 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
     const real spread_t = R(0.3333333333333333)*root(3);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.299038105676658)*spread_t;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_6 = J_star_t_6;
     model->J_star_t_8 = J_star_t_8;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->legs_size = legs_size;
     model->platform_mass = platform_mass;
     model->spread_t = spread_t;
@@ -565,43 +568,43 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
         const real rps_link2_inertia_zz = params->rps_link2_inertia[own][2][2];
         static const signed char signs_rps_branch_1[] = {1, 1, 1};
         const real rps_branch_1 = signs_rps_branch_1[own];
-        /* (rps-h_2) first moment of link 2 about the origin of link 2 */
-        const real rps_h_2_x = rps_link2_centre_of_mass_x*rps_link2_mass;
-        const real rps_h_2_y = rps_link2_centre_of_mass_y*rps_link2_mass;
-        /* (rps-J_1) inertia tensor of link 1 about the origin of link 1 */
-        const real rps_J_1_t = rps_link1_centre_of_mass_z*rps_link1_centre_of_mass_z;
-        const real rps_J_1_t_2 = rps_J_1_t + rps_link1_centre_of_mass_x*rps_link1_centre_of_mass_x
-            + rps_link1_centre_of_mass_y*rps_link1_centre_of_mass_y;
-        /* (rps-J_2) inertia tensor of link 2 about the origin of link 2 */
-        const real rps_J_2_t = rps_link2_centre_of_mass_z*rps_link2_centre_of_mass_z;
-        const real rps_J_2_t_2 = rps_J_2_t + rps_link2_centre_of_mass_x*rps_link2_centre_of_mass_x
-            + rps_link2_centre_of_mass_y*rps_link2_centre_of_mass_y;
-        /* (rps-J_group_1) inertia of the links that turn with link 1, each about its reference point */
-        const real rps_J_group_1_zz = rps_link1_inertia_zz + rps_link2_inertia_zz -
-            rps_link1_mass*(rps_J_1_t - rps_J_1_t_2) - rps_link2_mass*(rps_J_2_t - rps_J_2_t_2);
-        /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rps_g_r0_x = gravity_x*rps_base_frame_xx + gravity_y*rps_base_frame_yx +
-            gravity_z*rps_base_frame_zx;
-        const real rps_g_r0_y = gravity_x*rps_base_frame_xy + gravity_y*rps_base_frame_yy +
-            gravity_z*rps_base_frame_zy;
         /* (rps-h_1) first moment of link 1 about the origin of link 1 */
-        const real rps_h_1_x = rps_link1_centre_of_mass_x*rps_link1_mass;
-        const real rps_h_1_y = rps_link1_centre_of_mass_y*rps_link1_mass;
+        const real rps_h_1_in_spec1_x = rps_link1_centre_of_mass_x*rps_link1_mass;
+        const real rps_h_1_in_spec1_y = rps_link1_centre_of_mass_y*rps_link1_mass;
+        /* (rps-h_2) first moment of link 2 about the origin of link 2 */
+        const real rps_h_2_in_spec1_x = rps_link2_centre_of_mass_x*rps_link2_mass;
+        const real rps_h_2_in_spec1_y = rps_link2_centre_of_mass_y*rps_link2_mass;
+        /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
+        const real rps_acc_2_t = gravity_x*rps_base_frame_xx + gravity_y*rps_base_frame_yx +
+            gravity_z*rps_base_frame_zx;
+        const real rps_acc_2_t_2 = gravity_x*rps_base_frame_xy + gravity_y*rps_base_frame_yy +
+            gravity_z*rps_base_frame_zy;
+        /* (rps-J_group_1) inertia of the links that turn with link 1, each about its reference point */
+        const real rps_J_group_1_t = rps_link1_centre_of_mass_z*rps_link1_centre_of_mass_z;
+        const real rps_J_group_1_t_2 = rps_J_group_1_t +
+            rps_link1_centre_of_mass_x*rps_link1_centre_of_mass_x +
+            rps_link1_centre_of_mass_y*rps_link1_centre_of_mass_y;
+        const real rps_J_group_1_t_3 = rps_link2_centre_of_mass_z*rps_link2_centre_of_mass_z;
+        const real rps_J_group_1_t_4 = rps_J_group_1_t_3 +
+            rps_link2_centre_of_mass_x*rps_link2_centre_of_mass_x +
+            rps_link2_centre_of_mass_y*rps_link2_centre_of_mass_y;
+        const real rps_J_group_1_in_axes1_zz = rps_link1_inertia_zz + rps_link2_inertia_zz -
+            rps_link1_mass*(rps_J_group_1_t - rps_J_group_1_t_2) -
+            rps_link2_mass*(rps_J_group_1_t_3 - rps_J_group_1_t_4);
         /* (potential) potential energy */
-        const real rps_b_r0_x = rps_base_frame_xx*rps_base_point_x +
+        const real rps_potential_t = rps_base_frame_xx*rps_base_point_x +
             rps_base_frame_yx*rps_base_point_y + rps_base_frame_zx*rps_base_point_z;
-        const real rps_b_r0_y = rps_base_frame_xy*rps_base_point_x +
+        const real rps_potential_t_2 = rps_base_frame_xy*rps_base_point_x +
             rps_base_frame_yy*rps_base_point_y + rps_base_frame_zy*rps_base_point_z;
-        const real rps_b_r0_z = rps_base_frame_xz*rps_base_point_x +
+        const real rps_b_in_spec1_z = rps_base_frame_xz*rps_base_point_x +
             rps_base_frame_yz*rps_base_point_y + rps_base_frame_zz*rps_base_point_z;
-        const real rps_potential_t = (gravity_x*rps_base_frame_xz + gravity_y*rps_base_frame_yz +
-            gravity_z*rps_base_frame_zz)*(rps_b_r0_z*rps_link1_mass + rps_b_r0_z*rps_link2_mass +
-            rps_link1_centre_of_mass_z*rps_link1_mass +
+        const real rps_potential_t_3 = (gravity_x*rps_base_frame_xz + gravity_y*rps_base_frame_yz
+            + gravity_z*rps_base_frame_zz)*(rps_b_in_spec1_z*rps_link1_mass +
+            rps_b_in_spec1_z*rps_link2_mass + rps_link1_centre_of_mass_z*rps_link1_mass +
             rps_link2_centre_of_mass_z*rps_link2_mass);
-        model->rps_J_group_1_zz[leg] = rps_J_group_1_zz;
-        model->rps_b_r0_x[leg] = rps_b_r0_x;
-        model->rps_b_r0_y[leg] = rps_b_r0_y;
+        model->rps_J_group_1_in_axes1_zz[leg] = rps_J_group_1_in_axes1_zz;
+        model->rps_acc_2_t[leg] = rps_acc_2_t;
+        model->rps_acc_2_t_2[leg] = rps_acc_2_t_2;
         model->rps_base_frame_xx[leg] = rps_base_frame_xx;
         model->rps_base_frame_xy[leg] = rps_base_frame_xy;
         model->rps_base_frame_xz[leg] = rps_base_frame_xz;
@@ -615,29 +618,29 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
         model->rps_base_point_y[leg] = rps_base_point_y;
         model->rps_base_point_z[leg] = rps_base_point_z;
         model->rps_branch_1[leg] = rps_branch_1;
-        model->rps_g_r0_x[leg] = rps_g_r0_x;
-        model->rps_g_r0_y[leg] = rps_g_r0_y;
-        model->rps_h_1_x[leg] = rps_h_1_x;
-        model->rps_h_1_y[leg] = rps_h_1_y;
-        model->rps_h_2_x[leg] = rps_h_2_x;
-        model->rps_h_2_y[leg] = rps_h_2_y;
+        model->rps_h_1_in_spec1_x[leg] = rps_h_1_in_spec1_x;
+        model->rps_h_1_in_spec1_y[leg] = rps_h_1_in_spec1_y;
+        model->rps_h_2_in_spec1_x[leg] = rps_h_2_in_spec1_x;
+        model->rps_h_2_in_spec1_y[leg] = rps_h_2_in_spec1_y;
         model->rps_link1_mass[leg] = rps_link1_mass;
         model->rps_link2_mass[leg] = rps_link2_mass;
         model->rps_platform_point_x[leg] = rps_platform_point_x;
         model->rps_platform_point_y[leg] = rps_platform_point_y;
         model->rps_platform_point_z[leg] = rps_platform_point_z;
         model->rps_potential_t[leg] = rps_potential_t;
-        total_rps_x += leg < 3 ? rps_platform_point_x : 0;
-        total_rps_y += leg < 3 ? rps_platform_point_y : 0;
-        total_rps_z += leg < 3 ? rps_platform_point_z : 0;
+        model->rps_potential_t_2[leg] = rps_potential_t_2;
+        model->rps_potential_t_3[leg] = rps_potential_t_3;
+        b_c_rps_in_platform_x += leg < 3 ? rps_platform_point_x : 0;
+        b_c_rps_in_platform_y += leg < 3 ? rps_platform_point_y : 0;
+        b_c_rps_in_platform_z += leg < 3 ? rps_platform_point_z : 0;
     }
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_rps_x;
-    const real b_c_y = R(0.3333333333333333)*total_rps_y;
-    const real b_c_z = R(0.3333333333333333)*total_rps_z;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_rps_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_rps_in_platform_y;
+    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_rps_in_platform_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
     return OK;
 }
 
@@ -1329,41 +1332,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_6*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_6*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_6*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
-        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_7*R_xz;
-        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_7*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1374,26 +1383,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1412,21 +1430,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_10;
-        s[22*w + k] = J_star_t_11;
-        s[23*w + k] = J_star_t_12;
-        s[24*w + k] = J_star_t_14;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1444,39 +1462,39 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t w, size_t leg, size_t le
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -1487,213 +1505,196 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t w, size_t leg, size_t le
         const real rps_c_1 = inv_rps_root_1*rps_px_1;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_1) reciprocal vector 1 */
-        const real axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 -
-            rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 -
-            rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 -
-            rps_base_frame_zx*rps_s_1;
-        const real axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1;
-        /* (rps-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rps_h_2_y = m->rps_h_2_y[i];
-        const real rps_d_phi_2_t = inv_rps_root_1*rps_h_2_y;
-        /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real rps_J_group_1_zz = m->rps_J_group_1_zz[i];
-        const real rps_h_2_x = m->rps_h_2_x[i];
-        const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_d_G_t = inv_rps_root_1*(rps_h_2_x + inv_rps_root_1*rps_J_group_1_zz +
-            rps_root_1*(rps_link2_mass + inv_rps_root_1*rps_h_2_x));
-        /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rps_d_c_in_base_x = axis_y_rps_axes1_in_base_x*rps_d_phi_2_t -
-            axis_x_rps_axes1_in_base_x*rps_link2_mass;
-        const real rps_d_c_in_base_y = axis_y_rps_axes1_in_base_y*rps_d_phi_2_t -
-            axis_x_rps_axes1_in_base_y*rps_link2_mass;
-        const real rps_d_c_in_base_x_2 = axis_x_rps_axes1_in_base_x*rps_d_phi_2_t -
-            axis_y_rps_axes1_in_base_x*rps_d_G_t;
-        const real rps_d_c_in_base_y_2 = axis_x_rps_axes1_in_base_y*rps_d_phi_2_t -
-            axis_y_rps_axes1_in_base_y*rps_d_G_t;
-        const real rps_d_c_in_base_x_3 = axis_x_rps_axes1_in_base_x*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_x*rps_d_c_in_base_x_2;
-        const real rps_d_c_in_base_y_3 = axis_x_rps_axes1_in_base_y*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_x_2;
-        const real rps_d_c_in_base_z = axis_x_rps_axes1_in_base_z*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_x_2;
-        const real rps_d_c_in_base_y_4 = axis_x_rps_axes1_in_base_y*rps_d_c_in_base_y +
-            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_y_2;
-        const real rps_d_c_in_base_z_2 = axis_x_rps_axes1_in_base_z*rps_d_c_in_base_y +
-            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_y_2;
-        const real rps_d_c_in_base_z_3 =
-            axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*rps_d_phi_2_t -
-            axis_x_rps_axes1_in_base_z*rps_link2_mass) +
-            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*rps_d_phi_2_t -
-            axis_y_rps_axes1_in_base_z*rps_d_G_t);
-        /* (M_ta) coupling block of M */
-        const real rps_M_ta_t = rps_d_c_in_base_y_3*rps_q_in_base_z;
-        const real rps_M_ta_t_2 = rps_d_c_in_base_z*rps_q_in_base_y;
-        const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
-        const real rps_M_ta_t_4 = rps_d_c_in_base_x_3*rps_q_in_base_z -
-            rps_d_c_in_base_z*rps_q_in_base_x;
-        const real rps_M_ta_t_5 = rps_d_c_in_base_x_3*rps_q_in_base_y -
-            rps_d_c_in_base_y_3*rps_q_in_base_x;
-        const real rps_M_ta_t_6 = rps_d_c_in_base_y_4*rps_q_in_base_z -
-            rps_d_c_in_base_z_2*rps_q_in_base_y;
-        const real rps_M_ta_t_7 = rps_d_c_in_base_z_2*rps_q_in_base_x;
-        const real rps_M_ta_t_8 = rps_M_ta_t - rps_M_ta_t_7;
-        const real rps_M_ta_t_9 = rps_d_c_in_base_y_3*rps_q_in_base_y -
-            rps_d_c_in_base_y_4*rps_q_in_base_x;
-        const real rps_M_ta_t_10 = rps_d_c_in_base_z_2*rps_q_in_base_z -
-            rps_d_c_in_base_z_3*rps_q_in_base_y;
-        const real rps_M_ta_t_11 = rps_d_c_in_base_z*rps_q_in_base_z -
-            rps_d_c_in_base_z_3*rps_q_in_base_x;
-        const real rps_M_ta_t_12 = rps_M_ta_t_7 - rps_M_ta_t_2;
-        /* (M_aa) rotational block of M */
-        const real rps_M_aa_t = rps_M_ta_t_6*rps_q_in_base_z - rps_M_ta_t_10*rps_q_in_base_y;
-        const real rps_M_aa_t_2 = rps_M_ta_t_8*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_y;
-        const real rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_in_base_y + rps_M_ta_t_9*rps_q_in_base_z;
-        const real rps_M_aa_t_4 = rps_M_ta_t_4*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_x;
-        const real rps_M_aa_t_5 = rps_M_ta_t_12*rps_q_in_base_x + rps_M_ta_t_5*rps_q_in_base_z;
-        const real rps_M_aa_t_6 = rps_M_ta_t_5*rps_q_in_base_y - rps_M_ta_t_9*rps_q_in_base_x;
         /* (rps-S_dot) velocity of the connection point */
+        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y;
+        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
         const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x;
+        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
+        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
         const real t_dot_x = s[12*w + j];
         const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_tip_x = axis_x_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_x_rps_axes1_in_base_y*rps_S_dot_y + axis_x_rps_axes1_in_base_z*rps_S_dot_z;
-        /* (rps-qd_2) rate of joint 2 */
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z);
+        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
+            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
+        /* (rps-qd_1) rate of joint 1 */
+        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
+        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
+        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
+        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
+            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
+        /* (rps-W_1) centripetal tensor of link 1 */
+        const real rps_W_1_t = rps_qd_1*rps_qd_1;
         /* (rps-u_1) centripetal acceleration of the connection point */
         const real rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
         const real rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
         const real rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
-        /* (rps-W_1) centripetal tensor of link 1 */
-        const real rps_W_1_t = rps_qd_1*rps_qd_1;
-        /* (rps-u_1) centripetal acceleration of the connection point */
-        const real rps_u_1_tip_y = axis_y_rps_axes1_in_base_x*rps_u_1_x +
-            axis_y_rps_axes1_in_base_y*rps_u_1_y + axis_y_rps_axes1_in_base_z*rps_u_1_z;
+        const real rps_u_1_in_axes1_y = axis_y_rps_axes1_x*rps_u_1_x +
+            axis_y_rps_axes1_y*rps_u_1_y + axis_y_rps_axes1_z*rps_u_1_z;
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_u_1_tip_z = rps_base_frame_xz*rps_u_1_x + rps_base_frame_yz*rps_u_1_y +
-            rps_base_frame_zz*rps_u_1_z;
+        const real rps_u_1_in_axes1_z = rps_base_frame_xz*rps_u_1_x + rps_base_frame_yz*rps_u_1_y
+            + rps_base_frame_zz*rps_u_1_z;
         /* (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rps_rel_o_y = rps_u_1_tip_y - 2*rps_S_dot_tip_x*rps_qd_1;
-        /* (rps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rps_qdd_1_o = inv_rps_root_1*rps_rel_o_y;
+        const real rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2*rps_S_dot_in_axes1_x*rps_qd_1;
+        /* (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rps_qdd_1_o = inv_rps_root_1*rps_rel_o_in_axes1_y;
         /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
-        const real rps_g_r0_x = m->rps_g_r0_x[i];
-        const real rps_g_r0_y = m->rps_g_r0_y[i];
-        const real rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1;
-        const real rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1;
-        const real rps_acc_2_o_x = axis_x_rps_axes1_in_base_x*rps_u_1_x +
-            axis_x_rps_axes1_in_base_y*rps_u_1_y + axis_x_rps_axes1_in_base_z*rps_u_1_z -
-            rps_g_r1_x;
-        const real rps_acc_2_o_y = rps_u_1_tip_y - rps_g_r1_y;
+        const real rps_acc_2_t = m->rps_acc_2_t[i];
+        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
+        const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
+        const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
+        const real rps_acc_2_o_in_axes1_x = axis_x_rps_axes1_x*rps_u_1_x +
+            axis_x_rps_axes1_y*rps_u_1_y + axis_x_rps_axes1_z*rps_u_1_z - rps_g_in_axes1_x;
+        const real rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y;
         /* (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real rps_f_2_o_x = rps_acc_2_o_x*rps_link2_mass - rps_W_1_t*rps_h_2_x -
-            rps_h_2_y*rps_qdd_1_o;
-        const real rps_f_2_o_y = rps_acc_2_o_y*rps_link2_mass + rps_h_2_x*rps_qdd_1_o -
-            rps_W_1_t*rps_h_2_y;
+        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
+        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
+        const real rps_link2_mass = m->rps_link2_mass[i];
+        const real rps_f_2_o_in_axes1_x = rps_acc_2_o_in_axes1_x*rps_link2_mass -
+            rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1_o;
+        const real rps_f_2_o_in_axes1_y = rps_acc_2_o_in_axes1_y*rps_link2_mass +
+            rps_h_2_in_spec1_x*rps_qdd_1_o - rps_W_1_t*rps_h_2_in_spec1_y;
         /* (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rps_h_1_x = m->rps_h_1_x[i];
-        const real rps_h_1_y = m->rps_h_1_y[i];
-        const real rps_mu_1_o_z = rps_J_group_1_zz*rps_qdd_1_o + rps_acc_2_o_y*rps_h_2_x +
-            rps_g_r1_x*rps_h_1_y - rps_acc_2_o_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x;
+        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
+        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
+        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
+        const real rps_mu_1_o_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1_o +
+            rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x + rps_g_in_axes1_x*rps_h_1_in_spec1_y -
+            rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y - rps_g_in_axes1_y*rps_h_1_in_spec1_x;
+        /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real rps_d_G_in_axes1_yy = inv_rps_root_1*(rps_h_2_in_spec1_x +
+            inv_rps_root_1*rps_J_group_1_in_axes1_zz + rps_root_1*(rps_link2_mass +
+            inv_rps_root_1*rps_h_2_in_spec1_x));
         /* (rps-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rps_G_o_t = rps_f_2_o_y + inv_rps_root_1*rps_mu_1_o_z;
+        const real rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y +
+            inv_rps_root_1*rps_mu_1_o_in_axes1_z;
+        /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real rps_d_c_in_axes1_xy = inv_rps_root_1*rps_h_2_in_spec1_y;
+        const real rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy -
+            axis_x_rps_axes1_x*rps_link2_mass;
+        const real rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
+            axis_x_rps_axes1_y*rps_link2_mass;
+        const real rps_d_c_t_3 = axis_x_rps_axes1_x*rps_d_c_in_axes1_xy -
+            axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
+        const real rps_d_c_t_4 = axis_x_rps_axes1_y*rps_d_c_in_axes1_xy -
+            axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
+        const real rps_d_c_xx = axis_x_rps_axes1_x*rps_d_c_t + axis_y_rps_axes1_x*rps_d_c_t_3;
+        const real rps_d_c_xy = axis_x_rps_axes1_y*rps_d_c_t + axis_y_rps_axes1_y*rps_d_c_t_3;
+        const real rps_d_c_xz = axis_x_rps_axes1_z*rps_d_c_t + axis_y_rps_axes1_z*rps_d_c_t_3;
+        const real rps_d_c_yy = axis_x_rps_axes1_y*rps_d_c_t_2 + axis_y_rps_axes1_y*rps_d_c_t_4;
+        const real rps_d_c_yz = axis_x_rps_axes1_z*rps_d_c_t_2 + axis_y_rps_axes1_z*rps_d_c_t_4;
+        const real rps_d_c_zz = axis_x_rps_axes1_z*(axis_y_rps_axes1_z*rps_d_c_in_axes1_xy -
+            axis_x_rps_axes1_z*rps_link2_mass) +
+            axis_y_rps_axes1_z*(axis_x_rps_axes1_z*rps_d_c_in_axes1_xy -
+            axis_y_rps_axes1_z*rps_d_G_in_axes1_yy);
         /* (rps-U) velocity and gravity terms of the leg force */
-        const real rps_U_in_base_x = axis_x_rps_axes1_in_base_x*rps_f_2_o_x +
-            axis_y_rps_axes1_in_base_x*rps_G_o_t;
-        const real rps_U_in_base_y = axis_x_rps_axes1_in_base_y*rps_f_2_o_x +
-            axis_y_rps_axes1_in_base_y*rps_G_o_t;
-        const real rps_U_in_base_z = axis_x_rps_axes1_in_base_z*rps_f_2_o_x +
-            axis_y_rps_axes1_in_base_z*rps_G_o_t;
+        const real rps_U_x = axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x +
+            axis_y_rps_axes1_x*rps_G_o_in_axes1_y;
+        const real rps_U_y = axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x +
+            axis_y_rps_axes1_y*rps_G_o_in_axes1_y;
+        const real rps_U_z = axis_x_rps_axes1_z*rps_f_2_o_in_axes1_x +
+            axis_y_rps_axes1_z*rps_G_o_in_axes1_y;
+        /* (M_ta) coupling block of M */
+        const real rps_M_ta_t = rps_d_c_xy*rps_q_z;
+        const real rps_M_ta_t_2 = rps_d_c_xz*rps_q_y;
+        const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
+        const real rps_M_ta_t_4 = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x;
+        const real rps_M_ta_t_5 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x;
+        const real rps_M_ta_t_6 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y;
+        const real rps_M_ta_t_7 = rps_d_c_yz*rps_q_x;
+        const real rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t;
+        const real rps_M_ta_t_9 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x;
+        const real rps_M_ta_t_10 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y;
+        const real rps_M_ta_t_11 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z;
+        const real rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7;
+        /* (M_aa) rotational block of M */
+        const real rps_M_aa_t = rps_M_ta_t_10*rps_q_y - rps_M_ta_t_6*rps_q_z;
+        const real rps_M_aa_t_2 = rps_M_ta_t_11*rps_q_y - rps_M_ta_t_8*rps_q_z;
+        const real rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_y - rps_M_ta_t_9*rps_q_z;
+        const real rps_M_aa_t_4 = rps_M_ta_t_11*rps_q_x + rps_M_ta_t_4*rps_q_z;
+        const real rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x;
+        const real rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y;
         /* (Z_a) rotational part of Z */
-        const real rps_Z_a_t = rps_U_in_base_z*rps_q_in_base_y - rps_U_in_base_y*rps_q_in_base_z;
-        const real rps_Z_a_t_2 = rps_U_in_base_x*rps_q_in_base_z -
-            rps_U_in_base_z*rps_q_in_base_x;
-        const real rps_Z_a_t_3 = rps_U_in_base_y*rps_q_in_base_x -
-            rps_U_in_base_x*rps_q_in_base_y;
+        const real rps_Z_a_t = rps_U_z*rps_q_y - rps_U_y*rps_q_z;
+        const real rps_Z_a_t_2 = rps_U_x*rps_q_z - rps_U_z*rps_q_x;
+        const real rps_Z_a_t_3 = rps_U_y*rps_q_x - rps_U_x*rps_q_y;
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = axis_x_rps_axes1_in_base_z*rps_q_in_base_y -
-            axis_x_rps_axes1_in_base_y*rps_q_in_base_z;
-        const real rps_H_a_2_y = axis_x_rps_axes1_in_base_x*rps_q_in_base_z -
-            axis_x_rps_axes1_in_base_z*rps_q_in_base_x;
-        const real rps_H_a_2_z = axis_x_rps_axes1_in_base_y*rps_q_in_base_x -
-            axis_x_rps_axes1_in_base_x*rps_q_in_base_y;
+        const real rps_H_a_2_x = axis_x_rps_axes1_z*rps_q_y - axis_x_rps_axes1_y*rps_q_z;
+        const real rps_H_a_2_y = axis_x_rps_axes1_x*rps_q_z - axis_x_rps_axes1_z*rps_q_x;
+        const real rps_H_a_2_z = axis_x_rps_axes1_y*rps_q_x - axis_x_rps_axes1_x*rps_q_y;
         /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y -
-            rps_base_frame_yz*rps_q_in_base_z;
-        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z -
-            rps_base_frame_zz*rps_q_in_base_x;
-        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x -
-            rps_base_frame_xz*rps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rps_d_c_in_base_x_3 : rps_d_c_in_base_x_3;  /* total_rps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rps_d_c_in_base_y_3 : rps_d_c_in_base_y_3;  /* total_rps_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rps_d_c_in_base_z : rps_d_c_in_base_z;  /* total_rps_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rps_d_c_in_base_y_4 : rps_d_c_in_base_y_4;  /* total_rps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rps_d_c_in_base_z_2 : rps_d_c_in_base_z_2;  /* total_rps_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rps_d_c_in_base_z_3 : rps_d_c_in_base_z_3;  /* total_rps_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rps_M_ta_t_3 : rps_M_ta_t_3;  /* total_rps_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + rps_M_ta_t_4 : rps_M_ta_t_4;  /* total_rps_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + rps_M_ta_t_5 : rps_M_ta_t_5;  /* total_rps_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + rps_M_ta_t_6 : rps_M_ta_t_6;  /* total_rps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + rps_M_ta_t_8 : rps_M_ta_t_8;  /* total_rps_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + rps_M_ta_t_9 : rps_M_ta_t_9;  /* total_rps_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + rps_M_ta_t_10 : rps_M_ta_t_10;  /* total_rps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rps_M_ta_t_11 : rps_M_ta_t_11;  /* total_rps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + rps_M_ta_t_12 : rps_M_ta_t_12;  /* total_rps_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + rps_M_aa_t : rps_M_aa_t;  /* total_rps_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + rps_M_aa_t_2 : rps_M_aa_t_2;  /* total_rps_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + rps_M_aa_t_3 : rps_M_aa_t_3;  /* total_rps_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + rps_M_aa_t_4 : rps_M_aa_t_4;  /* total_rps_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + rps_M_aa_t_5 : rps_M_aa_t_5;  /* total_rps_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + rps_M_aa_t_6 : rps_M_aa_t_6;  /* total_rps_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + rps_U_in_base_x : rps_U_in_base_x;  /* total_rps_x */
-        terms[22*count + k] = add ? terms[22*count + k] + rps_U_in_base_y : rps_U_in_base_y;  /* total_rps_y */
-        terms[23*count + k] = add ? terms[23*count + k] + rps_U_in_base_z : rps_U_in_base_z;  /* total_rps_z */
-        terms[24*count + k] = add ? terms[24*count + k] + rps_Z_a_t : rps_Z_a_t;  /* total_rps_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + rps_Z_a_t_2 : rps_Z_a_t_2;  /* total_rps_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + rps_Z_a_t_3 : rps_Z_a_t_3;  /* total_rps_z_2 */
-        o[0*count + k] = axis_x_rps_axes1_in_base_x;
-        o[1*count + k] = axis_x_rps_axes1_in_base_y;
-        o[2*count + k] = axis_x_rps_axes1_in_base_z;
+        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
+        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
+        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rps_d_c_xx : rps_d_c_xx;  /* M_tt_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rps_d_c_xy : rps_d_c_xy;  /* M_tt_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + rps_d_c_xz : rps_d_c_xz;  /* M_tt_t_3 */
+        terms[3*count + k] = add ? terms[3*count + k] + rps_d_c_yy : rps_d_c_yy;  /* M_tt_t_4 */
+        terms[4*count + k] = add ? terms[4*count + k] + rps_d_c_yz : rps_d_c_yz;  /* M_tt_t_5 */
+        terms[5*count + k] = add ? terms[5*count + k] + rps_d_c_zz : rps_d_c_zz;  /* M_tt_t_6 */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + rps_M_ta_t_3 : rps_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + -rps_M_ta_t_4 : -rps_M_ta_t_4;  /* M_ta_rps_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + rps_M_ta_t_5 : rps_M_ta_t_5;  /* M_ta_rps_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + rps_M_ta_t_6 : rps_M_ta_t_6;  /* M_ta_rps_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + rps_M_ta_t_8 : rps_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + rps_M_ta_t_9 : rps_M_ta_t_9;  /* M_ta_rps_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + rps_M_ta_t_10 : rps_M_ta_t_10;  /* M_ta_rps_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + rps_M_ta_t_11 : rps_M_ta_t_11;  /* M_ta_rps_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + rps_M_ta_t_12 : rps_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + rps_M_aa_t : rps_M_aa_t;  /* M_aa_rps_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + rps_M_aa_t_2 : rps_M_aa_t_2;  /* M_aa_rps_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + rps_M_aa_t_3 : rps_M_aa_t_3;  /* M_aa_rps_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + rps_M_aa_t_4 : rps_M_aa_t_4;  /* M_aa_t */
+        terms[19*count + k] = add ? terms[19*count + k] + rps_M_aa_t_5 : rps_M_aa_t_5;  /* M_aa_rps_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + rps_M_aa_t_6 : rps_M_aa_t_6;  /* M_aa_rps_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + rps_U_x : rps_U_x;  /* Z_t_rps_x */
+        terms[22*count + k] = add ? terms[22*count + k] + rps_U_y : rps_U_y;  /* Z_t_rps_y */
+        terms[23*count + k] = add ? terms[23*count + k] + rps_U_z : rps_U_z;  /* Z_t_rps_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + rps_Z_a_t : rps_Z_a_t;  /* Z_a_rps_x */
+        terms[25*count + k] = add ? terms[25*count + k] + rps_Z_a_t_2 : rps_Z_a_t_2;  /* Z_a_rps_y */
+        terms[26*count + k] = add ? terms[26*count + k] + rps_Z_a_t_3 : rps_Z_a_t_3;  /* Z_a_rps_z */
+        /* (rps-w_2) reciprocal vector 2 */
+        o[0*count + k] = axis_x_rps_axes1_x;
+        o[1*count + k] = axis_x_rps_axes1_y;
+        o[2*count + k] = axis_x_rps_axes1_z;
+        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_H_a_2_x;
         o[4*count + k] = rps_H_a_2_y;
         o[5*count + k] = rps_H_a_2_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[6*count + k] = rps_base_frame_xz;
         o[7*count + k] = rps_base_frame_yz;
         o[8*count + k] = rps_base_frame_zz;
+        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = rps_Hk_a_1_x;
         o[10*count + k] = rps_Hk_a_1_y;
         o[11*count + k] = rps_Hk_a_1_z;
-        o[12*count + k] = rps_u_1_tip_z;
-        o[14*count + k] = ((axis_x_rps_axes1_in_base_x + (axis_x_rps_axes1_in_base_y +
-            axis_x_rps_axes1_in_base_z)) + (rps_H_a_2_x + (rps_H_a_2_y + rps_H_a_2_z))) +
-            ((rps_base_frame_xz + (rps_base_frame_yz + rps_base_frame_zz)) + ((rps_Hk_a_1_x +
-            rps_Hk_a_1_y) + (rps_Hk_a_1_z + rps_u_1_tip_z)));
+        /* (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
+        o[12*count + k] = rps_u_1_in_axes1_z;
+        o[14*count + k] = ((axis_x_rps_axes1_x + (axis_x_rps_axes1_y + axis_x_rps_axes1_z)) +
+            (rps_H_a_2_x + (rps_H_a_2_y + rps_H_a_2_z))) + ((rps_base_frame_xz +
+            (rps_base_frame_yz + rps_base_frame_zz)) + ((rps_Hk_a_1_x + rps_Hk_a_1_y) +
+            (rps_Hk_a_1_z + rps_u_1_in_axes1_z)));
         o[13*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(rps_root_1) > TOLERANCE*R(0.75));
     }
@@ -1726,101 +1727,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_t = sums[0*w + k];
         const real platform_mass = m->platform_mass;
-        const real total_rps_xx = sums[0*w + k];
-        const real M_tt_xx = platform_mass - total_rps_xx;
-        const real total_rps_yy = sums[3*w + k];
-        const real M_tt_yy = platform_mass - total_rps_yy;
-        const real total_rps_zz = sums[5*w + k];
-        const real M_tt_zz = platform_mass - total_rps_zz;
+        const real M_tt_xx = platform_mass - M_tt_t;
+        const real M_tt_t_4 = sums[3*w + k];
+        const real M_tt_yy = platform_mass - M_tt_t_4;
+        const real M_tt_t_6 = sums[5*w + k];
+        const real M_tt_zz = platform_mass - M_tt_t_6;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_rps_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_rps_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_rps_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_rps_xz_2 - h_star_in_base_y;
-        const real total_rps_yx = sums[9*w + k];
-        const real M_ta_yx = total_rps_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_rps_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_rps_yz_2;
-        const real total_rps_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_rps_zx;
-        const real total_rps_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_rps_zy;
+        const real M_ta_rps_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_rps_xy + h_star_z;
+        const real M_ta_rps_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_rps_xz - h_star_y;
+        const real M_ta_rps_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_rps_yx - h_star_z;
+        const real M_ta_rps_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_rps_yz + h_star_x;
+        const real M_ta_rps_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_rps_zx + h_star_y;
+        const real M_ta_rps_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_rps_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_10 = s[21*w + k];
-        const real total_rps_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_10 - total_rps_xx_3;
-        const real J_star_t_11 = s[22*w + k];
-        const real total_rps_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_11 + total_rps_xy_3;
-        const real J_star_t_12 = s[23*w + k];
-        const real total_rps_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_12 - total_rps_xz_3;
-        const real J_star_t_14 = s[24*w + k];
-        const real total_rps_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_14 - total_rps_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_rps_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_rps_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_rps_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_rps_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_rps_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_rps_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_rps_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_rps_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_rps_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_rps_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_t = sums[18*w + k];
+        const real M_aa_yy = J_star_yy - M_aa_t;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_rps_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_rps_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_rps_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rps_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_rps_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_rps_x;
+        const real Z_t_rps_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rps_x;
         const real Z_p_y = s[28*w + k];
-        const real total_rps_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_rps_y;
+        const real Z_t_rps_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rps_y;
         const real Z_p_z = s[29*w + k];
-        const real total_rps_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_rps_z;
+        const real Z_t_rps_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_rps_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_rps_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_rps_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_rps_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_rps_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_rps_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_rps_z_2;
+        const real Z_a_rps_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_rps_x + Z_q_x;
+        const real Z_a_rps_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_rps_y + Z_q_y;
+        const real Z_a_rps_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_rps_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rps_xy = sums[1*w + k];
-        M[1*w + k] = -total_rps_xy;
-        M[6*w + k] = -total_rps_xy;
-        const real total_rps_xz = sums[2*w + k];
-        M[2*w + k] = -total_rps_xz;
-        M[12*w + k] = -total_rps_xz;
+        const real M_tt_t_2 = sums[1*w + k];
+        M[1*w + k] = -M_tt_t_2;
+        M[6*w + k] = -M_tt_t_2;
+        const real M_tt_t_3 = sums[2*w + k];
+        M[2*w + k] = -M_tt_t_3;
+        M[12*w + k] = -M_tt_t_3;
         M[7*w + k] = M_tt_yy;
-        const real total_rps_yz = sums[4*w + k];
-        M[8*w + k] = -total_rps_yz;
-        M[13*w + k] = -total_rps_yz;
+        const real M_tt_t_5 = sums[4*w + k];
+        M[8*w + k] = -M_tt_t_5;
+        M[13*w + k] = -M_tt_t_5;
         M[14*w + k] = M_tt_zz;
-        const real total_rps_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_rps_xx_2;
-        M[18*w + k] = total_rps_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_rps_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_rps_yy_2;
-        M[25*w + k] = -total_rps_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_rps_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_rps_zz_2;
-        M[32*w + k] = -total_rps_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1830,17 +1834,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_rps_xy + total_rps_xz)) + (M_tt_yy + (total_rps_yz +
-            M_tt_zz))) + ((total_rps_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_rps_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_rps_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_t_2 + M_tt_t_3)) + (M_tt_yy + (M_tt_t_5 + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -1911,37 +1916,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_6*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_6*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_6*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
-        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_7*R_xz;
-        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_7*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1954,15 +1965,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_10;
-        s[16*w + k] = J_star_t_11;
-        s[17*w + k] = J_star_t_12;
-        s[18*w + k] = J_star_t_14;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1980,39 +1991,39 @@ INLINE void M_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -2023,102 +2034,84 @@ INLINE void M_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rps_c_1 = inv_rps_root_1*rps_px_1;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_1) reciprocal vector 1 */
-        const real axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 -
-            rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 -
-            rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 -
-            rps_base_frame_zx*rps_s_1;
-        const real axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1;
-        /* (rps-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rps_h_2_y = m->rps_h_2_y[i];
-        const real rps_d_phi_2_t = inv_rps_root_1*rps_h_2_y;
+        /* (rps-w_2) reciprocal vector 2 */
+        const real rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+        const real rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+        const real rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
         /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real rps_J_group_1_zz = m->rps_J_group_1_zz[i];
-        const real rps_h_2_x = m->rps_h_2_x[i];
+        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
+        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
         const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_d_G_t = inv_rps_root_1*(rps_h_2_x + inv_rps_root_1*rps_J_group_1_zz +
-            rps_root_1*(rps_link2_mass + inv_rps_root_1*rps_h_2_x));
+        const real rps_d_G_in_axes1_yy = inv_rps_root_1*(rps_h_2_in_spec1_x +
+            inv_rps_root_1*rps_J_group_1_in_axes1_zz + rps_root_1*(rps_link2_mass +
+            inv_rps_root_1*rps_h_2_in_spec1_x));
         /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rps_d_c_in_base_x = axis_y_rps_axes1_in_base_x*rps_d_phi_2_t -
-            axis_x_rps_axes1_in_base_x*rps_link2_mass;
-        const real rps_d_c_in_base_y = axis_y_rps_axes1_in_base_y*rps_d_phi_2_t -
-            axis_x_rps_axes1_in_base_y*rps_link2_mass;
-        const real rps_d_c_in_base_x_2 = axis_x_rps_axes1_in_base_x*rps_d_phi_2_t -
-            axis_y_rps_axes1_in_base_x*rps_d_G_t;
-        const real rps_d_c_in_base_y_2 = axis_x_rps_axes1_in_base_y*rps_d_phi_2_t -
-            axis_y_rps_axes1_in_base_y*rps_d_G_t;
-        const real rps_d_c_in_base_x_3 = axis_x_rps_axes1_in_base_x*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_x*rps_d_c_in_base_x_2;
-        const real rps_d_c_in_base_y_3 = axis_x_rps_axes1_in_base_y*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_x_2;
-        const real rps_d_c_in_base_z = axis_x_rps_axes1_in_base_z*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_x_2;
-        const real rps_d_c_in_base_y_4 = axis_x_rps_axes1_in_base_y*rps_d_c_in_base_y +
-            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_y_2;
-        const real rps_d_c_in_base_z_2 = axis_x_rps_axes1_in_base_z*rps_d_c_in_base_y +
-            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_y_2;
-        const real rps_d_c_in_base_z_3 =
-            axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*rps_d_phi_2_t -
-            axis_x_rps_axes1_in_base_z*rps_link2_mass) +
-            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*rps_d_phi_2_t -
-            axis_y_rps_axes1_in_base_z*rps_d_G_t);
+        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
+        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
+        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
+        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
+        const real rps_d_c_in_axes1_xy = inv_rps_root_1*rps_h_2_in_spec1_y;
+        const real rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_x;
+        const real rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
+            rps_link2_mass*rps_w_2_y;
+        const real rps_d_c_t_3 = rps_d_c_in_axes1_xy*rps_w_2_x -
+            axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
+        const real rps_d_c_t_4 = rps_d_c_in_axes1_xy*rps_w_2_y -
+            axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
+        const real rps_d_c_xx = axis_y_rps_axes1_x*rps_d_c_t_3 + rps_d_c_t*rps_w_2_x;
+        const real rps_d_c_xy = axis_y_rps_axes1_y*rps_d_c_t_3 + rps_d_c_t*rps_w_2_y;
+        const real rps_d_c_xz = axis_y_rps_axes1_z*rps_d_c_t_3 + rps_d_c_t*rps_w_2_z;
+        const real rps_d_c_yy = axis_y_rps_axes1_y*rps_d_c_t_4 + rps_d_c_t_2*rps_w_2_y;
+        const real rps_d_c_yz = axis_y_rps_axes1_z*rps_d_c_t_4 + rps_d_c_t_2*rps_w_2_z;
+        const real rps_d_c_zz = axis_y_rps_axes1_z*(rps_d_c_in_axes1_xy*rps_w_2_z -
+            axis_y_rps_axes1_z*rps_d_G_in_axes1_yy) +
+            rps_w_2_z*(axis_y_rps_axes1_z*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_z);
         /* (M_ta) coupling block of M */
-        const real rps_M_ta_t = rps_d_c_in_base_y_3*rps_q_in_base_z;
-        const real rps_M_ta_t_2 = rps_d_c_in_base_z*rps_q_in_base_y;
+        const real rps_M_ta_t = rps_d_c_xy*rps_q_z;
+        const real rps_M_ta_t_2 = rps_d_c_xz*rps_q_y;
         const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
-        const real rps_M_ta_t_4 = rps_d_c_in_base_x_3*rps_q_in_base_z -
-            rps_d_c_in_base_z*rps_q_in_base_x;
-        const real rps_M_ta_t_5 = rps_d_c_in_base_x_3*rps_q_in_base_y -
-            rps_d_c_in_base_y_3*rps_q_in_base_x;
-        const real rps_M_ta_t_6 = rps_d_c_in_base_y_4*rps_q_in_base_z -
-            rps_d_c_in_base_z_2*rps_q_in_base_y;
-        const real rps_M_ta_t_7 = rps_d_c_in_base_z_2*rps_q_in_base_x;
-        const real rps_M_ta_t_8 = rps_M_ta_t - rps_M_ta_t_7;
-        const real rps_M_ta_t_9 = rps_d_c_in_base_y_3*rps_q_in_base_y -
-            rps_d_c_in_base_y_4*rps_q_in_base_x;
-        const real rps_M_ta_t_10 = rps_d_c_in_base_z_2*rps_q_in_base_z -
-            rps_d_c_in_base_z_3*rps_q_in_base_y;
-        const real rps_M_ta_t_11 = rps_d_c_in_base_z*rps_q_in_base_z -
-            rps_d_c_in_base_z_3*rps_q_in_base_x;
-        const real rps_M_ta_t_12 = rps_M_ta_t_7 - rps_M_ta_t_2;
+        const real rps_M_ta_t_4 = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x;
+        const real rps_M_ta_t_5 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x;
+        const real rps_M_ta_t_6 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y;
+        const real rps_M_ta_t_7 = rps_d_c_yz*rps_q_x;
+        const real rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t;
+        const real rps_M_ta_t_9 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x;
+        const real rps_M_ta_t_10 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y;
+        const real rps_M_ta_t_11 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z;
+        const real rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7;
         /* (M_aa) rotational block of M */
-        const real rps_M_aa_t = rps_M_ta_t_6*rps_q_in_base_z - rps_M_ta_t_10*rps_q_in_base_y;
-        const real rps_M_aa_t_2 = rps_M_ta_t_8*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_y;
-        const real rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_in_base_y + rps_M_ta_t_9*rps_q_in_base_z;
-        const real rps_M_aa_t_4 = rps_M_ta_t_4*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_x;
-        const real rps_M_aa_t_5 = rps_M_ta_t_12*rps_q_in_base_x + rps_M_ta_t_5*rps_q_in_base_z;
-        const real rps_M_aa_t_6 = rps_M_ta_t_5*rps_q_in_base_y - rps_M_ta_t_9*rps_q_in_base_x;
-        terms[0*count + k] = add ? terms[0*count + k] + rps_d_c_in_base_x_3 : rps_d_c_in_base_x_3;  /* total_rps_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + rps_d_c_in_base_y_3 : rps_d_c_in_base_y_3;  /* total_rps_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + rps_d_c_in_base_z : rps_d_c_in_base_z;  /* total_rps_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + rps_d_c_in_base_y_4 : rps_d_c_in_base_y_4;  /* total_rps_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + rps_d_c_in_base_z_2 : rps_d_c_in_base_z_2;  /* total_rps_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + rps_d_c_in_base_z_3 : rps_d_c_in_base_z_3;  /* total_rps_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + rps_M_ta_t_3 : rps_M_ta_t_3;  /* total_rps_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + rps_M_ta_t_4 : rps_M_ta_t_4;  /* total_rps_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + rps_M_ta_t_5 : rps_M_ta_t_5;  /* total_rps_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + rps_M_ta_t_6 : rps_M_ta_t_6;  /* total_rps_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + rps_M_ta_t_8 : rps_M_ta_t_8;  /* total_rps_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + rps_M_ta_t_9 : rps_M_ta_t_9;  /* total_rps_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + rps_M_ta_t_10 : rps_M_ta_t_10;  /* total_rps_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + rps_M_ta_t_11 : rps_M_ta_t_11;  /* total_rps_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + rps_M_ta_t_12 : rps_M_ta_t_12;  /* total_rps_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + rps_M_aa_t : rps_M_aa_t;  /* total_rps_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + rps_M_aa_t_2 : rps_M_aa_t_2;  /* total_rps_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + rps_M_aa_t_3 : rps_M_aa_t_3;  /* total_rps_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + rps_M_aa_t_4 : rps_M_aa_t_4;  /* total_rps_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + rps_M_aa_t_5 : rps_M_aa_t_5;  /* total_rps_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + rps_M_aa_t_6 : rps_M_aa_t_6;  /* total_rps_zz_3 */
+        const real rps_M_aa_t = rps_M_ta_t_10*rps_q_y - rps_M_ta_t_6*rps_q_z;
+        const real rps_M_aa_t_2 = rps_M_ta_t_11*rps_q_y - rps_M_ta_t_8*rps_q_z;
+        const real rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_y - rps_M_ta_t_9*rps_q_z;
+        const real rps_M_aa_t_4 = rps_M_ta_t_11*rps_q_x + rps_M_ta_t_4*rps_q_z;
+        const real rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x;
+        const real rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + rps_d_c_xx : rps_d_c_xx;  /* M_tt_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rps_d_c_xy : rps_d_c_xy;  /* M_tt_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + rps_d_c_xz : rps_d_c_xz;  /* M_tt_t_3 */
+        terms[3*count + k] = add ? terms[3*count + k] + rps_d_c_yy : rps_d_c_yy;  /* M_tt_t_4 */
+        terms[4*count + k] = add ? terms[4*count + k] + rps_d_c_yz : rps_d_c_yz;  /* M_tt_t_5 */
+        terms[5*count + k] = add ? terms[5*count + k] + rps_d_c_zz : rps_d_c_zz;  /* M_tt_t_6 */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + rps_M_ta_t_3 : rps_M_ta_t_3;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + -rps_M_ta_t_4 : -rps_M_ta_t_4;  /* M_ta_rps_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + rps_M_ta_t_5 : rps_M_ta_t_5;  /* M_ta_rps_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + rps_M_ta_t_6 : rps_M_ta_t_6;  /* M_ta_rps_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + rps_M_ta_t_8 : rps_M_ta_t_8;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + rps_M_ta_t_9 : rps_M_ta_t_9;  /* M_ta_rps_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + rps_M_ta_t_10 : rps_M_ta_t_10;  /* M_ta_rps_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + rps_M_ta_t_11 : rps_M_ta_t_11;  /* M_ta_rps_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + rps_M_ta_t_12 : rps_M_ta_t_12;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + rps_M_aa_t : rps_M_aa_t;  /* M_aa_rps_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + rps_M_aa_t_2 : rps_M_aa_t_2;  /* M_aa_rps_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + rps_M_aa_t_3 : rps_M_aa_t_3;  /* M_aa_rps_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + rps_M_aa_t_4 : rps_M_aa_t_4;  /* M_aa_t */
+        terms[19*count + k] = add ? terms[19*count + k] + rps_M_aa_t_5 : rps_M_aa_t_5;  /* M_aa_rps_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + rps_M_aa_t_6 : rps_M_aa_t_6;  /* M_aa_rps_zz */
         o[0*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(rps_root_1) > TOLERANCE*R(0.75));
     }
@@ -2136,81 +2129,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_t = sums[0*w + k];
         const real platform_mass = m->platform_mass;
-        const real total_rps_xx = sums[0*w + k];
-        const real M_tt_xx = platform_mass - total_rps_xx;
-        const real total_rps_yy = sums[3*w + k];
-        const real M_tt_yy = platform_mass - total_rps_yy;
-        const real total_rps_zz = sums[5*w + k];
-        const real M_tt_zz = platform_mass - total_rps_zz;
+        const real M_tt_xx = platform_mass - M_tt_t;
+        const real M_tt_t_4 = sums[3*w + k];
+        const real M_tt_yy = platform_mass - M_tt_t_4;
+        const real M_tt_t_6 = sums[5*w + k];
+        const real M_tt_zz = platform_mass - M_tt_t_6;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_rps_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z - total_rps_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_rps_xz_2 = sums[8*w + k];
-        const real M_ta_xz = total_rps_xz_2 - h_star_in_base_y;
-        const real total_rps_yx = sums[9*w + k];
-        const real M_ta_yx = total_rps_yx - h_star_in_base_z;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_rps_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x + total_rps_yz_2;
-        const real total_rps_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y + total_rps_zx;
-        const real total_rps_zy = sums[13*w + k];
-        const real M_ta_zy = -h_star_in_base_x - total_rps_zy;
+        const real M_ta_rps_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_rps_xy + h_star_z;
+        const real M_ta_rps_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_rps_xz - h_star_y;
+        const real M_ta_rps_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_rps_yx - h_star_z;
+        const real M_ta_rps_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_rps_yz + h_star_x;
+        const real M_ta_rps_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_rps_zx + h_star_y;
+        const real M_ta_rps_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_rps_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_10 = s[15*w + k];
-        const real total_rps_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_10 - total_rps_xx_3;
-        const real J_star_t_11 = s[16*w + k];
-        const real total_rps_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_11 + total_rps_xy_3;
-        const real J_star_t_12 = s[17*w + k];
-        const real total_rps_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_12 - total_rps_xz_3;
-        const real J_star_t_14 = s[18*w + k];
-        const real total_rps_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_14 - total_rps_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_rps_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 + total_rps_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_rps_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 - total_rps_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_rps_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_rps_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_rps_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_rps_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_rps_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_rps_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_t = sums[18*w + k];
+        const real M_aa_yy = J_star_yy - M_aa_t;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_rps_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_rps_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_rps_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_rps_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_rps_xy = sums[1*w + k];
-        M[1*w + k] = -total_rps_xy;
-        M[6*w + k] = -total_rps_xy;
-        const real total_rps_xz = sums[2*w + k];
-        M[2*w + k] = -total_rps_xz;
-        M[12*w + k] = -total_rps_xz;
+        const real M_tt_t_2 = sums[1*w + k];
+        M[1*w + k] = -M_tt_t_2;
+        M[6*w + k] = -M_tt_t_2;
+        const real M_tt_t_3 = sums[2*w + k];
+        M[2*w + k] = -M_tt_t_3;
+        M[12*w + k] = -M_tt_t_3;
         M[7*w + k] = M_tt_yy;
-        const real total_rps_yz = sums[4*w + k];
-        M[8*w + k] = -total_rps_yz;
-        M[13*w + k] = -total_rps_yz;
+        const real M_tt_t_5 = sums[4*w + k];
+        M[8*w + k] = -M_tt_t_5;
+        M[13*w + k] = -M_tt_t_5;
         M[14*w + k] = M_tt_zz;
-        const real total_rps_xx_2 = sums[6*w + k];
-        M[3*w + k] = total_rps_xx_2;
-        M[18*w + k] = total_rps_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_rps_yy_2 = sums[10*w + k];
-        M[10*w + k] = -total_rps_yy_2;
-        M[25*w + k] = -total_rps_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_rps_zz_2 = sums[14*w + k];
-        M[17*w + k] = -total_rps_zz_2;
-        M[32*w + k] = -total_rps_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2220,10 +2216,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_rps_xy) + (total_rps_xz + (M_tt_yy + total_rps_yz))) +
-            ((M_tt_zz + total_rps_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_rps_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_rps_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_t_2) + (M_tt_t_3 + (M_tt_yy + M_tt_t_5))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2306,16 +2302,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2326,30 +2325,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2371,9 +2379,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2391,39 +2399,39 @@ INLINE void Z_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -2434,98 +2442,91 @@ INLINE void Z_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rps_c_1 = inv_rps_root_1*rps_px_1;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_1) reciprocal vector 1 */
-        const real axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 -
-            rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 -
-            rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 -
-            rps_base_frame_zx*rps_s_1;
-        const real axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1;
         /* (rps-S_dot) velocity of the connection point */
+        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y;
+        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
         const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x;
+        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
+        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
         const real t_dot_x = s[12*w + j];
         const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_tip_x = axis_x_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_x_rps_axes1_in_base_y*rps_S_dot_y + axis_x_rps_axes1_in_base_z*rps_S_dot_z;
-        /* (rps-qd_2) rate of joint 2 */
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z);
+        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
+            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
+        /* (rps-qd_1) rate of joint 1 */
+        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
+        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
+        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
+        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
+            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
+        /* (rps-W_1) centripetal tensor of link 1 */
+        const real rps_W_1_t = rps_qd_1*rps_qd_1;
         /* (rps-u_1) centripetal acceleration of the connection point */
         const real rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
         const real rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
         const real rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
-        /* (rps-W_1) centripetal tensor of link 1 */
-        const real rps_W_1_t = rps_qd_1*rps_qd_1;
-        /* (rps-u_1) centripetal acceleration of the connection point */
-        const real rps_u_1_tip_y = axis_y_rps_axes1_in_base_x*rps_u_1_x +
-            axis_y_rps_axes1_in_base_y*rps_u_1_y + axis_y_rps_axes1_in_base_z*rps_u_1_z;
+        const real rps_u_1_in_axes1_y = axis_y_rps_axes1_x*rps_u_1_x +
+            axis_y_rps_axes1_y*rps_u_1_y + axis_y_rps_axes1_z*rps_u_1_z;
         /* (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rps_rel_o_y = rps_u_1_tip_y - 2*rps_S_dot_tip_x*rps_qd_1;
-        /* (rps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rps_qdd_1_o = inv_rps_root_1*rps_rel_o_y;
+        const real rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2*rps_S_dot_in_axes1_x*rps_qd_1;
+        /* (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real rps_qdd_1_o = inv_rps_root_1*rps_rel_o_in_axes1_y;
         /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
-        const real rps_g_r0_x = m->rps_g_r0_x[i];
-        const real rps_g_r0_y = m->rps_g_r0_y[i];
-        const real rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1;
-        const real rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1;
-        const real rps_acc_2_o_x = axis_x_rps_axes1_in_base_x*rps_u_1_x +
-            axis_x_rps_axes1_in_base_y*rps_u_1_y + axis_x_rps_axes1_in_base_z*rps_u_1_z -
-            rps_g_r1_x;
-        const real rps_acc_2_o_y = rps_u_1_tip_y - rps_g_r1_y;
+        const real rps_acc_2_t = m->rps_acc_2_t[i];
+        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
+        const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
+        const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
+        const real rps_acc_2_o_in_axes1_x = axis_x_rps_axes1_x*rps_u_1_x +
+            axis_x_rps_axes1_y*rps_u_1_y + axis_x_rps_axes1_z*rps_u_1_z - rps_g_in_axes1_x;
+        const real rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y;
         /* (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real rps_h_2_x = m->rps_h_2_x[i];
-        const real rps_h_2_y = m->rps_h_2_y[i];
+        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
+        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
         const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_f_2_o_x = rps_acc_2_o_x*rps_link2_mass - rps_W_1_t*rps_h_2_x -
-            rps_h_2_y*rps_qdd_1_o;
-        const real rps_f_2_o_y = rps_acc_2_o_y*rps_link2_mass + rps_h_2_x*rps_qdd_1_o -
-            rps_W_1_t*rps_h_2_y;
+        const real rps_f_2_o_in_axes1_x = rps_acc_2_o_in_axes1_x*rps_link2_mass -
+            rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1_o;
+        const real rps_f_2_o_in_axes1_y = rps_acc_2_o_in_axes1_y*rps_link2_mass +
+            rps_h_2_in_spec1_x*rps_qdd_1_o - rps_W_1_t*rps_h_2_in_spec1_y;
         /* (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
-        const real rps_J_group_1_zz = m->rps_J_group_1_zz[i];
-        const real rps_h_1_x = m->rps_h_1_x[i];
-        const real rps_h_1_y = m->rps_h_1_y[i];
-        const real rps_mu_1_o_z = rps_J_group_1_zz*rps_qdd_1_o + rps_acc_2_o_y*rps_h_2_x +
-            rps_g_r1_x*rps_h_1_y - rps_acc_2_o_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x;
+        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
+        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
+        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
+        const real rps_mu_1_o_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1_o +
+            rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x + rps_g_in_axes1_x*rps_h_1_in_spec1_y -
+            rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y - rps_g_in_axes1_y*rps_h_1_in_spec1_x;
         /* (rps-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real rps_G_o_t = rps_f_2_o_y + inv_rps_root_1*rps_mu_1_o_z;
+        const real rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y +
+            inv_rps_root_1*rps_mu_1_o_in_axes1_z;
         /* (rps-U) velocity and gravity terms of the leg force */
-        const real rps_U_in_base_x = axis_x_rps_axes1_in_base_x*rps_f_2_o_x +
-            axis_y_rps_axes1_in_base_x*rps_G_o_t;
-        const real rps_U_in_base_y = axis_x_rps_axes1_in_base_y*rps_f_2_o_x +
-            axis_y_rps_axes1_in_base_y*rps_G_o_t;
-        const real rps_U_in_base_z = axis_x_rps_axes1_in_base_z*rps_f_2_o_x +
-            axis_y_rps_axes1_in_base_z*rps_G_o_t;
+        const real rps_U_x = axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x +
+            axis_y_rps_axes1_x*rps_G_o_in_axes1_y;
+        const real rps_U_y = axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x +
+            axis_y_rps_axes1_y*rps_G_o_in_axes1_y;
+        const real rps_U_z = axis_x_rps_axes1_z*rps_f_2_o_in_axes1_x +
+            axis_y_rps_axes1_z*rps_G_o_in_axes1_y;
         /* (Z_a) rotational part of Z */
-        const real rps_Z_a_t = rps_U_in_base_z*rps_q_in_base_y - rps_U_in_base_y*rps_q_in_base_z;
-        const real rps_Z_a_t_2 = rps_U_in_base_x*rps_q_in_base_z -
-            rps_U_in_base_z*rps_q_in_base_x;
-        const real rps_Z_a_t_3 = rps_U_in_base_y*rps_q_in_base_x -
-            rps_U_in_base_x*rps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rps_U_in_base_x : rps_U_in_base_x;  /* total_rps_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rps_U_in_base_y : rps_U_in_base_y;  /* total_rps_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rps_U_in_base_z : rps_U_in_base_z;  /* total_rps_z */
-        terms[3*count + k] = add ? terms[3*count + k] + rps_Z_a_t : rps_Z_a_t;  /* total_rps_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + rps_Z_a_t_2 : rps_Z_a_t_2;  /* total_rps_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + rps_Z_a_t_3 : rps_Z_a_t_3;  /* total_rps_z_2 */
+        const real rps_Z_a_t = rps_U_z*rps_q_y - rps_U_y*rps_q_z;
+        const real rps_Z_a_t_2 = rps_U_x*rps_q_z - rps_U_z*rps_q_x;
+        const real rps_Z_a_t_3 = rps_U_y*rps_q_x - rps_U_x*rps_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + rps_U_x : rps_U_x;  /* Z_t_rps_x */
+        terms[1*count + k] = add ? terms[1*count + k] + rps_U_y : rps_U_y;  /* Z_t_rps_y */
+        terms[2*count + k] = add ? terms[2*count + k] + rps_U_z : rps_U_z;  /* Z_t_rps_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + rps_Z_a_t : rps_Z_a_t;  /* Z_a_rps_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rps_Z_a_t_2 : rps_Z_a_t_2;  /* Z_a_rps_y */
+        terms[5*count + k] = add ? terms[5*count + k] + rps_Z_a_t_3 : rps_Z_a_t_3;  /* Z_a_rps_z */
         o[0*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(rps_root_1) > TOLERANCE*R(0.75));
     }
@@ -2543,27 +2544,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_rps_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_rps_x;
+        const real Z_t_rps_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_rps_x;
         const real Z_p_y = s[19*w + k];
-        const real total_rps_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_rps_y;
+        const real Z_t_rps_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_rps_y;
         const real Z_p_z = s[20*w + k];
-        const real total_rps_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_rps_z;
+        const real Z_t_rps_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_rps_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_rps_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_rps_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_rps_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_rps_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_rps_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_rps_z_2;
+        const real Z_a_rps_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_rps_x + Z_q_x;
+        const real Z_a_rps_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_rps_y + Z_q_y;
+        const real Z_a_rps_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_rps_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -2664,39 +2667,39 @@ INLINE void H_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -2707,28 +2710,24 @@ INLINE void H_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rps_c_1 = inv_rps_root_1*rps_px_1;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_1) reciprocal vector 1 */
-        const real axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1;
+        /* (rps-w_2) reciprocal vector 2 */
+        const real rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+        const real rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+        const real rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = axis_x_rps_axes1_in_base_z*rps_q_in_base_y -
-            axis_x_rps_axes1_in_base_y*rps_q_in_base_z;
-        const real rps_H_a_2_y = axis_x_rps_axes1_in_base_x*rps_q_in_base_z -
-            axis_x_rps_axes1_in_base_z*rps_q_in_base_x;
-        const real rps_H_a_2_z = axis_x_rps_axes1_in_base_y*rps_q_in_base_x -
-            axis_x_rps_axes1_in_base_x*rps_q_in_base_y;
-        o[0*count + k] = axis_x_rps_axes1_in_base_x;
-        o[1*count + k] = axis_x_rps_axes1_in_base_y;
-        o[2*count + k] = axis_x_rps_axes1_in_base_z;
+        const real rps_H_a_2_x = rps_q_y*rps_w_2_z - rps_q_z*rps_w_2_y;
+        const real rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z;
+        const real rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x;
+        /* (rps-w_2) reciprocal vector 2 */
+        o[0*count + k] = rps_w_2_x;
+        o[1*count + k] = rps_w_2_y;
+        o[2*count + k] = rps_w_2_z;
+        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_H_a_2_x;
         o[4*count + k] = rps_H_a_2_y;
         o[5*count + k] = rps_H_a_2_z;
-        o[7*count + k] = (axis_x_rps_axes1_in_base_x + (axis_x_rps_axes1_in_base_y +
-            axis_x_rps_axes1_in_base_z)) + (rps_H_a_2_x + (rps_H_a_2_y + rps_H_a_2_z));
+        o[7*count + k] = (rps_w_2_x + (rps_w_2_y + rps_w_2_z)) + (rps_H_a_2_x + (rps_H_a_2_y +
+            rps_H_a_2_z));
         o[6*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(rps_root_1) > TOLERANCE*R(0.75));
     }
@@ -2820,38 +2819,36 @@ INLINE void Hk_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, co
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
+        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
         const real R_xx = s[0*w + j];
         const real R_xy = s[1*w + j];
         const real R_xz = s[2*w + j];
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[3*w + j];
         const real R_yy = s[4*w + j];
         const real R_yz = s[5*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[6*w + j];
         const real R_zy = s[7*w + j];
         const real R_zz = s[8*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y -
-            rps_base_frame_yz*rps_q_in_base_z;
+        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z -
-            rps_base_frame_zz*rps_q_in_base_x;
-        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x -
-            rps_base_frame_xz*rps_q_in_base_y;
+        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
+        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = rps_base_frame_xz;
         o[1*count + k] = rps_base_frame_yz;
         o[2*count + k] = rps_base_frame_zz;
+        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_Hk_a_1_x;
         o[4*count + k] = rps_Hk_a_1_y;
         o[5*count + k] = rps_Hk_a_1_z;
@@ -2955,42 +2952,41 @@ INLINE void constraint_bias_legs_rps(const prepared *m, size_t w, size_t leg, si
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
+        /* (rps-u_1) centripetal acceleration of the connection point */
         const real R_xx = s[0*w + j];
         const real R_xy = s[1*w + j];
         const real R_xz = s[2*w + j];
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[3*w + j];
         const real R_yy = s[4*w + j];
         const real R_yz = s[5*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[6*w + j];
         const real R_zy = s[7*w + j];
         const real R_zz = s[8*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
-        /* (rps-S_dot) velocity of the connection point */
         const real omega_y = s[10*w + j];
         const real omega_z = s[11*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y;
+        const real rps_u_1_t = omega_y*rps_q_z - omega_z*rps_q_y;
         const real omega_x = s[9*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x;
-        /* (rps-u_1) centripetal acceleration of the connection point */
+        const real rps_u_1_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
+        const real rps_u_1_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_u_1_tip_z = rps_base_frame_xz*(omega_y*rps_S_dot_t_3 -
-            omega_z*rps_S_dot_t_2) + rps_base_frame_yz*(omega_z*rps_S_dot_t -
-            omega_x*rps_S_dot_t_3) + rps_base_frame_zz*(omega_x*rps_S_dot_t_2 -
-            omega_y*rps_S_dot_t);
-        o[0*count + k] = rps_u_1_tip_z;
-        o[1*count + k] = rps_u_1_tip_z;
+        const real rps_u_1_in_axes1_z = rps_base_frame_xz*(omega_y*rps_u_1_t_3 -
+            omega_z*rps_u_1_t_2) + rps_base_frame_yz*(omega_z*rps_u_1_t - omega_x*rps_u_1_t_3) +
+            rps_base_frame_zz*(omega_x*rps_u_1_t_2 - omega_y*rps_u_1_t);
+        /* (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
+        o[0*count + k] = rps_u_1_in_axes1_z;
+        o[1*count + k] = rps_u_1_in_axes1_z;
     }
 }
 
@@ -3090,33 +3086,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -3124,31 +3107,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real platform_mass = m->platform_mass;
-        const real f_p_x = a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -3176,9 +3185,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -3196,39 +3205,39 @@ INLINE void required_legs_rps(const prepared *m, size_t w, size_t leg, size_t le
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -3239,133 +3248,122 @@ INLINE void required_legs_rps(const prepared *m, size_t w, size_t leg, size_t le
         const real rps_c_1 = inv_rps_root_1*rps_px_1;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_1) reciprocal vector 1 */
-        const real axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 -
-            rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 -
-            rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 -
-            rps_base_frame_zx*rps_s_1;
-        const real axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1;
         /* (rps-S_dot) velocity of the connection point */
+        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y;
+        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
         const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x;
+        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
+        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
         const real t_dot_x = s[12*w + j];
         const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_tip_x = axis_x_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_x_rps_axes1_in_base_y*rps_S_dot_y + axis_x_rps_axes1_in_base_z*rps_S_dot_z;
-        /* (rps-qd_2) rate of joint 2 */
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z);
+        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
+            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
+        /* (rps-qd_1) rate of joint 1 */
+        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
+        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
+        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
+        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
+            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
         /* (rps-W_1) centripetal tensor of link 1 */
         const real rps_W_1_t = rps_qd_1*rps_qd_1;
-        /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rps_g_r0_x = m->rps_g_r0_x[i];
-        const real rps_g_r0_y = m->rps_g_r0_y[i];
-        const real rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1;
-        const real rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1;
-        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = axis_x_rps_axes1_in_base_z*rps_q_in_base_y -
-            axis_x_rps_axes1_in_base_y*rps_q_in_base_z;
-        const real rps_H_a_2_y = axis_x_rps_axes1_in_base_x*rps_q_in_base_z -
-            axis_x_rps_axes1_in_base_z*rps_q_in_base_x;
-        const real rps_H_a_2_z = axis_x_rps_axes1_in_base_y*rps_q_in_base_x -
-            axis_x_rps_axes1_in_base_x*rps_q_in_base_y;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y -
-            rps_base_frame_yz*rps_q_in_base_z;
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z -
-            rps_base_frame_zz*rps_q_in_base_x;
-        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x -
-            rps_base_frame_xz*rps_q_in_base_y;
         /* (rps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y;
+        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z;
+        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x;
+        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x;
         /* (rps-S_ddot) acceleration of the connection point */
         const real rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
         const real rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
         const real rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
-        const real rps_S_ddot_tip_y = axis_y_rps_axes1_in_base_x*rps_S_ddot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_ddot_y + axis_y_rps_axes1_in_base_z*rps_S_ddot_z;
+        const real rps_S_ddot_in_axes1_y = axis_y_rps_axes1_x*rps_S_ddot_x +
+            axis_y_rps_axes1_y*rps_S_ddot_y + axis_y_rps_axes1_z*rps_S_ddot_z;
         /* (rps-rel) acceleration of the connection point left to the joint accelerations */
-        const real rps_rel_y = rps_S_ddot_tip_y - 2*rps_S_dot_tip_x*rps_qd_1;
+        const real rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2*rps_S_dot_in_axes1_x*rps_qd_1;
         /* (rps-qdd_1) acceleration of joint 1 */
-        const real rps_qdd_1 = inv_rps_root_1*rps_rel_y;
+        const real rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y;
         /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rps_acc_2_x = axis_x_rps_axes1_in_base_x*rps_S_ddot_x +
-            axis_x_rps_axes1_in_base_y*rps_S_ddot_y + axis_x_rps_axes1_in_base_z*rps_S_ddot_z -
-            rps_g_r1_x;
-        const real rps_acc_2_y = rps_S_ddot_tip_y - rps_g_r1_y;
+        const real rps_acc_2_t = m->rps_acc_2_t[i];
+        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
+        const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
+        const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
+        const real rps_acc_2_in_axes1_x = axis_x_rps_axes1_x*rps_S_ddot_x +
+            axis_x_rps_axes1_y*rps_S_ddot_y + axis_x_rps_axes1_z*rps_S_ddot_z - rps_g_in_axes1_x;
+        const real rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - rps_g_in_axes1_y;
         /* (rps-f_2) inertia force of link 2 less its weight */
-        const real rps_h_2_x = m->rps_h_2_x[i];
-        const real rps_h_2_y = m->rps_h_2_y[i];
+        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
+        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
         const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_f_2_x = rps_acc_2_x*rps_link2_mass - rps_W_1_t*rps_h_2_x -
-            rps_h_2_y*rps_qdd_1;
-        const real rps_f_2_y = rps_acc_2_y*rps_link2_mass + rps_h_2_x*rps_qdd_1 -
-            rps_W_1_t*rps_h_2_y;
+        const real rps_f_2_in_axes1_x = rps_acc_2_in_axes1_x*rps_link2_mass -
+            rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1;
+        const real rps_f_2_in_axes1_y = rps_acc_2_in_axes1_y*rps_link2_mass +
+            rps_h_2_in_spec1_x*rps_qdd_1 - rps_W_1_t*rps_h_2_in_spec1_y;
         /* (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rps_J_group_1_zz = m->rps_J_group_1_zz[i];
-        const real rps_h_1_x = m->rps_h_1_x[i];
-        const real rps_h_1_y = m->rps_h_1_y[i];
-        const real rps_mu_1_z = rps_J_group_1_zz*rps_qdd_1 + rps_acc_2_y*rps_h_2_x +
-            rps_g_r1_x*rps_h_1_y - rps_acc_2_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x;
+        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
+        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
+        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
+        const real rps_mu_1_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1 +
+            rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x + rps_g_in_axes1_x*rps_h_1_in_spec1_y -
+            rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y - rps_g_in_axes1_y*rps_h_1_in_spec1_x;
         /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rps_G_t = rps_f_2_y + inv_rps_root_1*rps_mu_1_z;
+        const real rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_root_1*rps_mu_1_in_axes1_z;
         /* (rps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rps_c_in_base_x = -axis_x_rps_axes1_in_base_x*rps_f_2_x -
-            axis_y_rps_axes1_in_base_x*rps_G_t;
-        const real rps_c_in_base_y = -axis_x_rps_axes1_in_base_y*rps_f_2_x -
-            axis_y_rps_axes1_in_base_y*rps_G_t;
-        const real rps_c_in_base_z = -axis_x_rps_axes1_in_base_z*rps_f_2_x -
-            axis_y_rps_axes1_in_base_z*rps_G_t;
+        const real rps_c_x = -axis_x_rps_axes1_x*rps_f_2_in_axes1_x -
+            axis_y_rps_axes1_x*rps_G_in_axes1_y;
+        const real rps_c_y = -axis_x_rps_axes1_y*rps_f_2_in_axes1_x -
+            axis_y_rps_axes1_y*rps_G_in_axes1_y;
+        const real rps_c_z = -axis_x_rps_axes1_z*rps_f_2_in_axes1_x -
+            axis_y_rps_axes1_z*rps_G_in_axes1_y;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rps_R_a_t = rps_c_in_base_z*rps_q_in_base_y - rps_c_in_base_y*rps_q_in_base_z;
-        const real rps_R_a_t_2 = rps_c_in_base_x*rps_q_in_base_z -
-            rps_c_in_base_z*rps_q_in_base_x;
-        const real rps_R_a_t_3 = rps_c_in_base_y*rps_q_in_base_x -
-            rps_c_in_base_x*rps_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + rps_c_in_base_x : rps_c_in_base_x;  /* total_rps_x */
-        terms[1*count + k] = add ? terms[1*count + k] + rps_c_in_base_y : rps_c_in_base_y;  /* total_rps_y */
-        terms[2*count + k] = add ? terms[2*count + k] + rps_c_in_base_z : rps_c_in_base_z;  /* total_rps_z */
-        terms[3*count + k] = add ? terms[3*count + k] + rps_R_a_t : rps_R_a_t;  /* total_rps_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + rps_R_a_t_2 : rps_R_a_t_2;  /* total_rps_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + rps_R_a_t_3 : rps_R_a_t_3;  /* total_rps_z_2 */
-        o[0*count + k] = axis_x_rps_axes1_in_base_x;
-        o[1*count + k] = axis_x_rps_axes1_in_base_y;
-        o[2*count + k] = axis_x_rps_axes1_in_base_z;
+        const real rps_R_a_t = rps_c_y*rps_q_z - rps_c_z*rps_q_y;
+        const real rps_R_a_t_2 = rps_c_z*rps_q_x - rps_c_x*rps_q_z;
+        const real rps_R_a_t_3 = rps_c_x*rps_q_y - rps_c_y*rps_q_x;
+        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
+        const real rps_H_a_2_x = axis_x_rps_axes1_z*rps_q_y - axis_x_rps_axes1_y*rps_q_z;
+        const real rps_H_a_2_y = axis_x_rps_axes1_x*rps_q_z - axis_x_rps_axes1_z*rps_q_x;
+        const real rps_H_a_2_z = axis_x_rps_axes1_y*rps_q_x - axis_x_rps_axes1_x*rps_q_y;
+        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
+        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
+        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
+        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
+        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
+        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + rps_c_x : rps_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + rps_c_y : rps_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + rps_c_z : rps_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + rps_R_a_t : rps_R_a_t;  /* R_a_rps_x */
+        terms[4*count + k] = add ? terms[4*count + k] + rps_R_a_t_2 : rps_R_a_t_2;  /* R_a_rps_y */
+        terms[5*count + k] = add ? terms[5*count + k] + rps_R_a_t_3 : rps_R_a_t_3;  /* R_a_rps_z */
+        /* (rps-w_2) reciprocal vector 2 */
+        o[0*count + k] = axis_x_rps_axes1_x;
+        o[1*count + k] = axis_x_rps_axes1_y;
+        o[2*count + k] = axis_x_rps_axes1_z;
+        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_H_a_2_x;
         o[4*count + k] = rps_H_a_2_y;
         o[5*count + k] = rps_H_a_2_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[6*count + k] = rps_base_frame_xz;
         o[7*count + k] = rps_base_frame_yz;
         o[8*count + k] = rps_base_frame_zz;
+        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = rps_Hk_a_1_x;
         o[10*count + k] = rps_Hk_a_1_y;
         o[11*count + k] = rps_Hk_a_1_z;
@@ -3398,28 +3396,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_rps_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_rps_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_rps_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_rps_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_rps_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_rps_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_rps_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_rps_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_rps_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_rps_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_rps_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_rps_z_2;
+        const real R_a_rps_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_rps_x + mu_p_x;
+        const real R_a_rps_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_rps_y + mu_p_y;
+        const real R_a_rps_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_rps_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -3539,28 +3539,29 @@ INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t w, size_t leg,
         const real t_z = s[2*w + j];
         const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
         const real rps_branch_1 = m->rps_branch_1[i];
         const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
         /* (rps-q_1) displacement of joint 1 */
+        const real inv_rps_root_1 = 1/rps_root_1;
         const real rps_q_1 = angle(inv_rps_root_1*rps_py_1, inv_rps_root_1*rps_px_1);
+        /* (rps-q_1) displacement of joint 1 */
         o[0*count + k] = rps_q_1;
+        /* (rps-q_2) displacement of joint 2 */
         o[1*count + k] = rps_root_1;
         o[3*count + k] = rps_q_1 + rps_root_1;
         o[2*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625));
@@ -3684,39 +3685,39 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t w, size_t leg, size_t
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -3731,24 +3732,26 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t w, size_t leg, size_t
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
         const real t_dot_x = s[12*w + j];
-        const real rps_S_dot_x = t_dot_x + omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y;
+        const real rps_S_dot_x = t_dot_x + omega_y*rps_q_z - omega_z*rps_q_y;
         const real omega_x = s[15*w + j];
         const real t_dot_y = s[13*w + j];
-        const real rps_S_dot_y = t_dot_y + omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z;
+        const real rps_S_dot_y = t_dot_y + omega_z*rps_q_x - omega_x*rps_q_z;
         const real t_dot_z = s[14*w + j];
-        const real rps_S_dot_z = t_dot_z + omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x;
-        const real rps_S_dot_tip_x = rps_S_dot_x*(rps_base_frame_xx*rps_c_1 +
+        const real rps_S_dot_z = t_dot_z + omega_x*rps_q_y - omega_y*rps_q_x;
+        const real rps_S_dot_in_axes1_x = rps_S_dot_x*(rps_base_frame_xx*rps_c_1 +
             rps_base_frame_xy*rps_s_1) + rps_S_dot_y*(rps_base_frame_yx*rps_c_1 +
             rps_base_frame_yy*rps_s_1) + rps_S_dot_z*(rps_base_frame_zx*rps_c_1 +
             rps_base_frame_zy*rps_s_1);
-        /* (rps-qd_2) rate of joint 2 */
+        /* (rps-qd_1) rate of joint 1 */
         const real rps_qd_1 = inv_rps_root_1*(rps_S_dot_x*(rps_base_frame_xy*rps_c_1 -
             rps_base_frame_xx*rps_s_1) + rps_S_dot_y*(rps_base_frame_yy*rps_c_1 -
             rps_base_frame_yx*rps_s_1) + rps_S_dot_z*(rps_base_frame_zy*rps_c_1 -
             rps_base_frame_zx*rps_s_1));
+        /* (rps-qd_1) rate of joint 1 */
         o[0*count + k] = rps_qd_1;
-        o[1*count + k] = rps_S_dot_tip_x;
-        o[3*count + k] = rps_qd_1 + rps_S_dot_tip_x;
+        /* (rps-qd_2) rate of joint 2 */
+        o[1*count + k] = rps_S_dot_in_axes1_x;
+        o[3*count + k] = rps_qd_1 + rps_S_dot_in_axes1_x;
         o[2*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(rps_root_1) > TOLERANCE*R(0.75));
     }
@@ -3892,39 +3895,39 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t w, size_t leg
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -3935,63 +3938,58 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t w, size_t leg
         const real rps_c_1 = inv_rps_root_1*rps_px_1;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_1) reciprocal vector 1 */
-        const real axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 -
-            rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 -
-            rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 -
-            rps_base_frame_zx*rps_s_1;
-        const real axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1;
         /* (rps-S_dot) velocity of the connection point */
+        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y;
+        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
         const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x;
+        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
+        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
         const real t_dot_x = s[12*w + j];
         const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_tip_x = axis_x_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_x_rps_axes1_in_base_y*rps_S_dot_y + axis_x_rps_axes1_in_base_z*rps_S_dot_z;
-        /* (rps-qd_2) rate of joint 2 */
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z);
+        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
+            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
+        /* (rps-qd_1) rate of joint 1 */
+        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
+        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
+        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
+        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
+            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
         /* (rps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y;
+        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z;
+        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x;
+        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x;
         /* (rps-S_ddot) acceleration of the connection point */
         const real rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
         const real rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
         const real rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
         /* (rps-rel) acceleration of the connection point left to the joint accelerations */
-        const real rps_rel_x = axis_x_rps_axes1_in_base_x*rps_S_ddot_x +
-            axis_x_rps_axes1_in_base_y*rps_S_ddot_y + axis_x_rps_axes1_in_base_z*rps_S_ddot_z +
+        const real rps_rel_in_axes1_x = axis_x_rps_axes1_x*rps_S_ddot_x +
+            axis_x_rps_axes1_y*rps_S_ddot_y + axis_x_rps_axes1_z*rps_S_ddot_z +
             rps_qd_1*rps_qd_1*rps_root_1;
-        const real rps_rel_y = axis_y_rps_axes1_in_base_x*rps_S_ddot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_ddot_y + axis_y_rps_axes1_in_base_z*rps_S_ddot_z -
-            2*rps_S_dot_tip_x*rps_qd_1;
+        const real rps_rel_in_axes1_y = axis_y_rps_axes1_x*rps_S_ddot_x +
+            axis_y_rps_axes1_y*rps_S_ddot_y + axis_y_rps_axes1_z*rps_S_ddot_z -
+            2*rps_S_dot_in_axes1_x*rps_qd_1;
         /* (rps-qdd_1) acceleration of joint 1 */
-        const real rps_qdd_1 = inv_rps_root_1*rps_rel_y;
+        const real rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y;
+        /* (rps-qdd_1) acceleration of joint 1 */
         o[0*count + k] = rps_qdd_1;
-        o[1*count + k] = rps_rel_x;
-        o[3*count + k] = rps_qdd_1 + rps_rel_x;
+        /* (rps-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = rps_rel_in_axes1_x;
+        o[3*count + k] = rps_qdd_1 + rps_rel_in_axes1_x;
         o[2*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(rps_root_1) > TOLERANCE*R(0.75));
     }
@@ -4115,14 +4113,14 @@ INLINE void constraints_legs_rps(const prepared *m, size_t w, size_t leg, size_t
         const real t_z = s[2*w + j];
         const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z - rps_base_point_z;
-        /* (rps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_xi_1_t = rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz +
+        const real rps_S_in_axes1_z = rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz +
             rps_S_z*rps_base_frame_zz;
-        o[0*count + k] = rps_xi_1_t;
-        o[1*count + k] = rps_xi_1_t;
+        /* (rps-phi_c1) distance by which the leg misses the platform, along a direction left out */
+        o[0*count + k] = rps_S_in_axes1_z;
+        o[1*count + k] = rps_S_in_axes1_z;
     }
 }
 
@@ -4261,39 +4259,39 @@ INLINE void legs_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -4304,101 +4302,96 @@ INLINE void legs_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real rps_c_1 = inv_rps_root_1*rps_px_1;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_1) reciprocal vector 1 */
-        const real axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 -
-            rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 -
-            rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 -
-            rps_base_frame_zx*rps_s_1;
-        const real axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1;
         /* (rps-S_dot) velocity of the connection point */
+        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
         const real omega_y = s[16*w + j];
         const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y;
+        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
         const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x;
+        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
+        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
         const real t_dot_x = s[12*w + j];
         const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
         const real t_dot_y = s[13*w + j];
         const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
         const real t_dot_z = s[14*w + j];
         const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_tip_x = axis_x_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_x_rps_axes1_in_base_y*rps_S_dot_y + axis_x_rps_axes1_in_base_z*rps_S_dot_z;
-        /* (rps-qd_2) rate of joint 2 */
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z);
+        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
+            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
+        /* (rps-qd_1) rate of joint 1 */
+        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
+        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
+        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
+        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
+            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
         /* (rps-W_1) centripetal tensor of link 1 */
         const real rps_W_1_t = rps_qd_1*rps_qd_1;
-        /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rps_g_r0_x = m->rps_g_r0_x[i];
-        const real rps_g_r0_y = m->rps_g_r0_y[i];
-        const real rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1;
-        const real rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1;
         /* (rps-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y;
+        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z;
+        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x;
+        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x;
         /* (rps-S_ddot) acceleration of the connection point */
         const real rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
         const real rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
         const real rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
-        const real rps_S_ddot_tip_y = axis_y_rps_axes1_in_base_x*rps_S_ddot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_ddot_y + axis_y_rps_axes1_in_base_z*rps_S_ddot_z;
+        const real rps_S_ddot_in_axes1_y = axis_y_rps_axes1_x*rps_S_ddot_x +
+            axis_y_rps_axes1_y*rps_S_ddot_y + axis_y_rps_axes1_z*rps_S_ddot_z;
         /* (rps-rel) acceleration of the connection point left to the joint accelerations */
-        const real rps_rel_y = rps_S_ddot_tip_y - 2*rps_S_dot_tip_x*rps_qd_1;
+        const real rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2*rps_S_dot_in_axes1_x*rps_qd_1;
         /* (rps-qdd_1) acceleration of joint 1 */
-        const real rps_qdd_1 = inv_rps_root_1*rps_rel_y;
+        const real rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y;
         /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rps_acc_2_x = axis_x_rps_axes1_in_base_x*rps_S_ddot_x +
-            axis_x_rps_axes1_in_base_y*rps_S_ddot_y + axis_x_rps_axes1_in_base_z*rps_S_ddot_z -
-            rps_g_r1_x;
-        const real rps_acc_2_y = rps_S_ddot_tip_y - rps_g_r1_y;
+        const real rps_acc_2_t = m->rps_acc_2_t[i];
+        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
+        const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
+        const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
+        const real rps_acc_2_in_axes1_x = axis_x_rps_axes1_x*rps_S_ddot_x +
+            axis_x_rps_axes1_y*rps_S_ddot_y + axis_x_rps_axes1_z*rps_S_ddot_z - rps_g_in_axes1_x;
+        const real rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - rps_g_in_axes1_y;
         /* (rps-f_2) inertia force of link 2 less its weight */
-        const real rps_h_2_x = m->rps_h_2_x[i];
-        const real rps_h_2_y = m->rps_h_2_y[i];
+        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
+        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
         const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_f_2_x = rps_acc_2_x*rps_link2_mass - rps_W_1_t*rps_h_2_x -
-            rps_h_2_y*rps_qdd_1;
-        const real rps_f_2_y = rps_acc_2_y*rps_link2_mass + rps_h_2_x*rps_qdd_1 -
-            rps_W_1_t*rps_h_2_y;
+        const real rps_f_2_in_axes1_x = rps_acc_2_in_axes1_x*rps_link2_mass -
+            rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1;
+        const real rps_f_2_in_axes1_y = rps_acc_2_in_axes1_y*rps_link2_mass +
+            rps_h_2_in_spec1_x*rps_qdd_1 - rps_W_1_t*rps_h_2_in_spec1_y;
         /* (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rps_J_group_1_zz = m->rps_J_group_1_zz[i];
-        const real rps_h_1_x = m->rps_h_1_x[i];
-        const real rps_h_1_y = m->rps_h_1_y[i];
-        const real rps_mu_1_z = rps_J_group_1_zz*rps_qdd_1 + rps_acc_2_y*rps_h_2_x +
-            rps_g_r1_x*rps_h_1_y - rps_acc_2_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x;
+        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
+        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
+        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
+        const real rps_mu_1_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1 +
+            rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x + rps_g_in_axes1_x*rps_h_1_in_spec1_y -
+            rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y - rps_g_in_axes1_y*rps_h_1_in_spec1_x;
         /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real rps_G_t = rps_f_2_y + inv_rps_root_1*rps_mu_1_z;
+        const real rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_root_1*rps_mu_1_in_axes1_z;
         /* (rps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rps_c_in_base_x = -axis_x_rps_axes1_in_base_x*rps_f_2_x -
-            axis_y_rps_axes1_in_base_x*rps_G_t;
-        const real rps_c_in_base_y = -axis_x_rps_axes1_in_base_y*rps_f_2_x -
-            axis_y_rps_axes1_in_base_y*rps_G_t;
-        const real rps_c_in_base_z = -axis_x_rps_axes1_in_base_z*rps_f_2_x -
-            axis_y_rps_axes1_in_base_z*rps_G_t;
-        o[0*count + k] = rps_c_in_base_x;
-        o[1*count + k] = rps_c_in_base_y;
-        o[2*count + k] = rps_c_in_base_z;
-        o[3*count + k] = axis_x_rps_axes1_in_base_x;
-        o[4*count + k] = axis_x_rps_axes1_in_base_y;
-        o[5*count + k] = axis_x_rps_axes1_in_base_z;
+        const real rps_c_x = -axis_x_rps_axes1_x*rps_f_2_in_axes1_x -
+            axis_y_rps_axes1_x*rps_G_in_axes1_y;
+        const real rps_c_y = -axis_x_rps_axes1_y*rps_f_2_in_axes1_x -
+            axis_y_rps_axes1_y*rps_G_in_axes1_y;
+        const real rps_c_z = -axis_x_rps_axes1_z*rps_f_2_in_axes1_x -
+            axis_y_rps_axes1_z*rps_G_in_axes1_y;
+        /* (rps-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        o[0*count + k] = rps_c_x;
+        o[1*count + k] = rps_c_y;
+        o[2*count + k] = rps_c_z;
+        /* (rps-w_2) reciprocal vector 2 */
+        o[3*count + k] = axis_x_rps_axes1_x;
+        o[4*count + k] = axis_x_rps_axes1_y;
+        o[5*count + k] = axis_x_rps_axes1_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         o[6*count + k] = rps_base_frame_xz;
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
@@ -4480,14 +4473,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real platform_mass = m->platform_mass;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            platform_mass*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z +
-            platform_mass*t_y) + gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z +
-            platform_mass*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + platform_mass*t_x) +
+            gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x
+            + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -4536,18 +4530,18 @@ INLINE void potential_legs_rps(const prepared *m, size_t w, size_t leg, size_t l
         const real t_z = s[2*w + j];
         const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -4559,25 +4553,26 @@ INLINE void potential_legs_rps(const prepared *m, size_t w, size_t leg, size_t l
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
         /* (potential) potential energy */
-        const real rps_b_r0_x = m->rps_b_r0_x[i];
-        const real rps_b_r0_y = m->rps_b_r0_y[i];
-        const real rps_b_r1_x = rps_b_r0_x*rps_c_1 + rps_b_r0_y*rps_s_1;
-        const real rps_b_r1_y = rps_b_r0_y*rps_c_1 - rps_b_r0_x*rps_s_1;
-        const real rps_g_r0_x = m->rps_g_r0_x[i];
-        const real rps_g_r0_y = m->rps_g_r0_y[i];
-        const real rps_h_1_x = m->rps_h_1_x[i];
-        const real rps_h_1_y = m->rps_h_1_y[i];
-        const real rps_h_2_x = m->rps_h_2_x[i];
-        const real rps_h_2_y = m->rps_h_2_y[i];
+        const real rps_potential_t = m->rps_potential_t[i];
+        const real rps_potential_t_2 = m->rps_potential_t_2[i];
+        const real rps_b_in_spec1_x = rps_c_1*rps_potential_t + rps_potential_t_2*rps_s_1;
+        const real rps_b_in_spec1_y = rps_c_1*rps_potential_t_2 - rps_potential_t*rps_s_1;
+        const real rps_acc_2_t = m->rps_acc_2_t[i];
+        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
+        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
+        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
+        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
+        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
         const real rps_link1_mass = m->rps_link1_mass[i];
         const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_potential_t = m->rps_potential_t[i];
-        const real rps_potential_t_2 = rps_potential_t + (rps_c_1*rps_g_r0_x +
-            rps_g_r0_y*rps_s_1)*(rps_h_1_x + rps_h_2_x + rps_b_r1_x*rps_link1_mass +
-            rps_link2_mass*(rps_b_r1_x + rps_root_1)) + (rps_c_1*rps_g_r0_y -
-            rps_g_r0_x*rps_s_1)*(rps_h_1_y + rps_h_2_y + rps_b_r1_y*rps_link1_mass +
-            rps_b_r1_y*rps_link2_mass);
-        terms[0*count + k] = add ? terms[0*count + k] + rps_potential_t_2 : rps_potential_t_2;  /* total_rps */
+        const real rps_potential_t_3 = m->rps_potential_t_3[i];
+        const real rps_potential_t_4 = rps_potential_t_3 + (rps_acc_2_t*rps_c_1 +
+            rps_acc_2_t_2*rps_s_1)*(rps_h_1_in_spec1_x + rps_h_2_in_spec1_x +
+            rps_b_in_spec1_x*rps_link1_mass + rps_link2_mass*(rps_b_in_spec1_x + rps_root_1)) +
+            (rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1)*(rps_h_1_in_spec1_y + rps_h_2_in_spec1_y
+            + rps_b_in_spec1_y*rps_link1_mass + rps_b_in_spec1_y*rps_link2_mass);
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + rps_potential_t_4 : rps_potential_t_4;  /* potential_t_2 */
         o[0*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625));
     }
 }
@@ -4594,8 +4589,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_rps = sums[0*w + k];
-        const real potential_ = -potential_t - total_rps;
+        const real potential_t_2 = sums[0*w + k];
+        const real potential_ = -potential_t - potential_t_2;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -4665,6 +4661,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -4685,39 +4682,39 @@ INLINE void condition_legs_rps(const prepared *m, size_t w, size_t leg, size_t l
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real rps_q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real rps_q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z;
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x;
+        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y;
+        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
         const real rps_base_point_z = m->rps_base_point_z[i];
         const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
+        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
         /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
+        /* (rps-py_1) component across the reference direction */
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+            rps_S_z*rps_base_frame_zy;
         /* (rps-rho2_1) squared amplitude */
         const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
         /* (rps-root_1) amplitude, with the sign of the branch */
@@ -4728,65 +4725,60 @@ INLINE void condition_legs_rps(const prepared *m, size_t w, size_t leg, size_t l
         const real rps_c_1 = inv_rps_root_1*rps_px_1;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
         const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_1) reciprocal vector 1 */
-        const real axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1;
+        /* (rps-w_2) reciprocal vector 2 */
+        const real rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+        const real rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+        const real rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
+        /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real rps_pivot_size = magnitude(rps_rho2_1);
+        const real rps_pivot_size_2 = magnitude(rps_root_1);
+        const real rps_least_pivots = lesser(R(1.3333333333333333)*root(rps_pivot_size),
+            R(1.3333333333333333)*rps_pivot_size_2);
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = axis_x_rps_axes1_in_base_z*rps_q_in_base_y -
-            axis_x_rps_axes1_in_base_y*rps_q_in_base_z;
-        const real rps_H_a_2_y = axis_x_rps_axes1_in_base_x*rps_q_in_base_z -
-            axis_x_rps_axes1_in_base_z*rps_q_in_base_x;
-        const real rps_H_a_2_z = axis_x_rps_axes1_in_base_y*rps_q_in_base_x -
-            axis_x_rps_axes1_in_base_x*rps_q_in_base_y;
+        const real rps_H_a_2_x = rps_q_y*rps_w_2_z - rps_q_z*rps_w_2_y;
+        const real rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z;
+        const real rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x;
         /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y -
-            rps_base_frame_yz*rps_q_in_base_z;
+        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z -
-            rps_base_frame_zz*rps_q_in_base_x;
-        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x -
-            rps_base_frame_xz*rps_q_in_base_y;
+        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
+        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
         /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real rps_spread_t = b_c_x - rps_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real rps_spread_t_2 = b_c_y - rps_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real rps_spread_t_3 = b_c_z - rps_platform_point_z;
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rps_spread_t = b_c_in_platform_x - rps_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rps_spread_t_2 = b_c_in_platform_y - rps_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real rps_spread_t_3 = b_c_in_platform_z - rps_platform_point_z;
         const real rps_spread_t_4 = rps_spread_t*rps_spread_t + rps_spread_t_2*rps_spread_t_2 +
             rps_spread_t_3*rps_spread_t_3;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_pivot_size = magnitude(rps_rho2_1);
-        /* (rps-w_1) reciprocal vector 1 */
-        const real rps_pivot_size_2 = magnitude(rps_root_1);
-        /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real rps_least_pivots = lesser(R(1.3333333333333333)*root(rps_pivot_size),
-            R(1.3333333333333333)*rps_pivot_size_2);
-        terms[0*count + k] = add ? terms[0*count + k] + rps_spread_t_4 : rps_spread_t_4;  /* total_rps */
-        o[0*count + k] = axis_x_rps_axes1_in_base_x;
-        o[1*count + k] = axis_x_rps_axes1_in_base_y;
-        o[2*count + k] = axis_x_rps_axes1_in_base_z;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + rps_spread_t_4 : rps_spread_t_4;  /* spread_rps */
+        /* (rps-w_2) reciprocal vector 2 */
+        o[0*count + k] = rps_w_2_x;
+        o[1*count + k] = rps_w_2_y;
+        o[2*count + k] = rps_w_2_z;
+        /* (rps-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_H_a_2_x;
         o[4*count + k] = rps_H_a_2_y;
         o[5*count + k] = rps_H_a_2_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[6*count + k] = rps_base_frame_xz;
         o[7*count + k] = rps_base_frame_yz;
         o[8*count + k] = rps_base_frame_zz;
+        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = rps_Hk_a_1_x;
         o[10*count + k] = rps_Hk_a_1_y;
         o[11*count + k] = rps_Hk_a_1_z;
+        /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[12*count + k] = rps_least_pivots;
-        o[14*count + k] = ((axis_x_rps_axes1_in_base_x + (axis_x_rps_axes1_in_base_y +
-            axis_x_rps_axes1_in_base_z)) + (rps_H_a_2_x + (rps_H_a_2_y + rps_H_a_2_z))) +
-            ((rps_base_frame_xz + (rps_base_frame_yz + rps_base_frame_zz)) + ((rps_Hk_a_1_x +
-            rps_Hk_a_1_y) + (rps_Hk_a_1_z + rps_least_pivots)));
+        o[14*count + k] = ((rps_w_2_x + (rps_w_2_y + rps_w_2_z)) + (rps_H_a_2_x + (rps_H_a_2_y +
+            rps_H_a_2_z))) + ((rps_base_frame_xz + (rps_base_frame_yz + rps_base_frame_zz)) +
+            ((rps_Hk_a_1_x + rps_Hk_a_1_y) + (rps_Hk_a_1_z + rps_least_pivots)));
         o[13*count + k] = UNLESS(magnitude(rps_rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
             UNLESS(magnitude(rps_root_1) > TOLERANCE*R(0.75));
     }
@@ -4819,9 +4811,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
+        const real spread_rps = sums[0*w + k];
         const real spread_t = m->spread_t;
-        const real total_rps = sums[0*w + k];
-        const real spread_ = spread_t*root(total_rps);
+        const real spread_ = root(spread_rps)*spread_t;
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -351,7 +351,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -515,29 +515,29 @@ def _prepare(p):
     rps_link2_inertia_zz = p.rps_link2_inertia[:, 2, 2]
     rps_branch_1 = _BRANCHES["rps_branch_1"]
     # (h_star) first moment about the platform origin
-    h_star_x = platform_centre_of_mass_x*platform_mass
-    h_star_y = platform_centre_of_mass_y*platform_mass
-    h_star_z = platform_centre_of_mass_z*platform_mass
+    h_star_in_platform_x = platform_centre_of_mass_x*platform_mass
+    h_star_in_platform_y = platform_centre_of_mass_y*platform_mass
+    h_star_in_platform_z = platform_centre_of_mass_z*platform_mass
     # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
     J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3
-    J_star_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4)
-    J_star_xy = (
+    J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4)
+    J_star_in_platform_xy = (
     platform_inertia_xy - platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass
     )
-    J_star_xz = (
+    J_star_in_platform_xz = (
     platform_inertia_xz - platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass
     )
-    J_star_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4)
-    J_star_yz = (
+    J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4)
+    J_star_in_platform_yz = (
     platform_inertia_yz - platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     )
-    J_star_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4)
-    J_star_t_5 = J_star_xx - J_star_yy
+    J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4)
+    J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_6 = 0.5*J_star_t_5
-    J_star_t_7 = J_star_xx - J_star_zz
+    J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_8 = 0.5*J_star_t_7
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
@@ -547,100 +547,105 @@ def _prepare(p):
     spread_t = 0.3333333333333333*sqrt(3.0)
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.299038105676658*spread_t
+    # (rps-h_1) first moment of link 1 about the origin of link 1
+    rps_h_1_in_spec1_x = rps_link1_centre_of_mass_x*rps_link1_mass
+    rps_h_1_in_spec1_y = rps_link1_centre_of_mass_y*rps_link1_mass
     # (rps-h_2) first moment of link 2 about the origin of link 2
-    rps_h_2_x = rps_link2_centre_of_mass_x*rps_link2_mass
-    rps_h_2_y = rps_link2_centre_of_mass_y*rps_link2_mass
-    # (rps-J_1) inertia tensor of link 1 about the origin of link 1
-    rps_J_1_t = rps_link1_centre_of_mass_z*rps_link1_centre_of_mass_z
-    rps_J_1_t_2 = (
-    rps_J_1_t + rps_link1_centre_of_mass_x*rps_link1_centre_of_mass_x +
-        rps_link1_centre_of_mass_y*rps_link1_centre_of_mass_y
-    )
-    # (rps-J_2) inertia tensor of link 2 about the origin of link 2
-    rps_J_2_t = rps_link2_centre_of_mass_z*rps_link2_centre_of_mass_z
-    rps_J_2_t_2 = (
-    rps_J_2_t + rps_link2_centre_of_mass_x*rps_link2_centre_of_mass_x +
-        rps_link2_centre_of_mass_y*rps_link2_centre_of_mass_y
-    )
-    # (rps-J_group_1) inertia of the links that turn with link 1, each about its reference point
-    rps_J_group_1_zz = (
-    rps_link1_inertia_zz + rps_link2_inertia_zz - rps_link1_mass*(rps_J_1_t - rps_J_1_t_2) -
-        rps_link2_mass*(rps_J_2_t - rps_J_2_t_2)
-    )
-    # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    rps_g_r0_x = (
+    rps_h_2_in_spec1_x = rps_link2_centre_of_mass_x*rps_link2_mass
+    rps_h_2_in_spec1_y = rps_link2_centre_of_mass_y*rps_link2_mass
+    # (rps-acc_2) acceleration of the reference point of link 2, less gravity
+    rps_acc_2_t = (
     gravity_x*rps_base_frame_xx + gravity_y*rps_base_frame_yx + gravity_z*rps_base_frame_zx
     )
-    rps_g_r0_y = (
+    rps_acc_2_t_2 = (
     gravity_x*rps_base_frame_xy + gravity_y*rps_base_frame_yy + gravity_z*rps_base_frame_zy
     )
-    # (rps-h_1) first moment of link 1 about the origin of link 1
-    rps_h_1_x = rps_link1_centre_of_mass_x*rps_link1_mass
-    rps_h_1_y = rps_link1_centre_of_mass_y*rps_link1_mass
+    # (rps-J_group_1) inertia of the links that turn with link 1, each about its reference point
+    rps_J_group_1_t = rps_link1_centre_of_mass_z*rps_link1_centre_of_mass_z
+    rps_J_group_1_t_2 = (
+    rps_J_group_1_t + rps_link1_centre_of_mass_x*rps_link1_centre_of_mass_x +
+        rps_link1_centre_of_mass_y*rps_link1_centre_of_mass_y
+    )
+    rps_J_group_1_t_3 = rps_link2_centre_of_mass_z*rps_link2_centre_of_mass_z
+    rps_J_group_1_t_4 = (
+    rps_J_group_1_t_3 + rps_link2_centre_of_mass_x*rps_link2_centre_of_mass_x +
+        rps_link2_centre_of_mass_y*rps_link2_centre_of_mass_y
+    )
+    rps_J_group_1_in_axes1_zz = (
+    rps_link1_inertia_zz + rps_link2_inertia_zz - rps_link1_mass*(rps_J_group_1_t -
+        rps_J_group_1_t_2) - rps_link2_mass*(rps_J_group_1_t_3 - rps_J_group_1_t_4)
+    )
     # (potential) potential energy
-    rps_b_r0_x = (
+    rps_potential_t = (
     rps_base_frame_xx*rps_base_point_x + rps_base_frame_yx*rps_base_point_y +
         rps_base_frame_zx*rps_base_point_z
     )
-    rps_b_r0_y = (
+    rps_potential_t_2 = (
     rps_base_frame_xy*rps_base_point_x + rps_base_frame_yy*rps_base_point_y +
         rps_base_frame_zy*rps_base_point_z
     )
-    rps_b_r0_z = (
+    rps_b_in_spec1_z = (
     rps_base_frame_xz*rps_base_point_x + rps_base_frame_yz*rps_base_point_y +
         rps_base_frame_zz*rps_base_point_z
     )
-    rps_potential_t = (
+    rps_potential_t_3 = (
     (gravity_x*rps_base_frame_xz + gravity_y*rps_base_frame_yz +
-        gravity_z*rps_base_frame_zz)*(rps_b_r0_z*rps_link1_mass + rps_b_r0_z*rps_link2_mass +
-        rps_link1_centre_of_mass_z*rps_link1_mass + rps_link2_centre_of_mass_z*rps_link2_mass)
+        gravity_z*rps_base_frame_zz)*(rps_b_in_spec1_z*rps_link1_mass +
+        rps_b_in_spec1_z*rps_link2_mass + rps_link1_centre_of_mass_z*rps_link1_mass +
+        rps_link2_centre_of_mass_z*rps_link2_mass)
     )
-    total_rps_x = np.sum(np.broadcast_to(rps_platform_point_x, _rps))
-    total_rps_y = np.sum(np.broadcast_to(rps_platform_point_y, _rps))
-    total_rps_z = np.sum(np.broadcast_to(rps_platform_point_z, _rps))
+    b_c_rps_in_platform_x = np.sum(np.broadcast_to(rps_platform_point_x, _rps))
+    b_c_rps_in_platform_y = np.sum(np.broadcast_to(rps_platform_point_y, _rps))
+    b_c_rps_in_platform_z = np.sum(np.broadcast_to(rps_platform_point_z, _rps))
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_rps_x
-    b_c_y = 0.3333333333333333*total_rps_y
-    b_c_z = 0.3333333333333333*total_rps_z
+    b_c_in_platform_x = 0.3333333333333333*b_c_rps_in_platform_x
+    b_c_in_platform_y = 0.3333333333333333*b_c_rps_in_platform_y
+    b_c_in_platform_z = 0.3333333333333333*b_c_rps_in_platform_z
     return {
         "dynamics": (
-        (J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-                Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-                h_star_z, platform_mass,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
+                J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_rps,
-        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
-                    rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
-                    rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
-                    rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
-                    rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x,
+        (rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
+                    rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
+                    rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
+                    rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_branch_1,
+                    rps_h_1_in_spec1_x, rps_h_1_in_spec1_y, rps_h_2_in_spec1_x,
+                    rps_h_2_in_spec1_y, rps_link2_mass, rps_platform_point_x,
                     rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
         ),
         "M": (
-        (J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, platform_mass,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_rps,
-        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+        (rps_J_group_1_in_axes1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
                     rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
-                    rps_base_point_y, rps_base_point_z, rps_branch_1, rps_h_2_x, rps_h_2_y,
-                    rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
-                    rps_platform_point_z,),
+                    rps_base_point_y, rps_base_point_z, rps_branch_1, rps_h_2_in_spec1_x,
+                    rps_h_2_in_spec1_y, rps_link2_mass, rps_platform_point_x,
+                    rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
         ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_rps,
-        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
-                    rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
-                    rps_base_point_y, rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y,
-                    rps_h_1_x, rps_h_1_y, rps_h_2_x, rps_h_2_y, rps_link2_mass,
-                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,),
+        (rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
+                    rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_zx,
+                    rps_base_frame_zy, rps_base_point_x, rps_base_point_y, rps_base_point_z,
+                    rps_branch_1, rps_h_1_in_spec1_x, rps_h_1_in_spec1_y, rps_h_2_in_spec1_x,
+                    rps_h_2_in_spec1_y, rps_link2_mass, rps_platform_point_x,
+                    rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
         ),
@@ -674,15 +679,18 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
             (
                 (_rps,
-        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
-                    rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
-                    rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
-                    rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
-                    rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x,
+        (rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
+                    rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
+                    rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
+                    rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_branch_1,
+                    rps_h_1_in_spec1_x, rps_h_1_in_spec1_y, rps_h_2_in_spec1_x,
+                    rps_h_2_in_spec1_y, rps_link2_mass, rps_platform_point_x,
                     rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
@@ -734,30 +742,32 @@ def _prepare(p):
         (),
             (
                 (_rps,
-        (rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
-                    rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
-                    rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
-                    rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
-                    rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x,
+        (rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
+                    rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
+                    rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
+                    rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_branch_1,
+                    rps_h_1_in_spec1_x, rps_h_1_in_spec1_y, rps_h_2_in_spec1_x,
+                    rps_h_2_in_spec1_y, rps_link2_mass, rps_platform_point_x,
                     rps_platform_point_y, rps_platform_point_z,),
                 ),
             ),
         ),
         "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
             (
                 (_rps,
-        (rps_b_r0_x, rps_b_r0_y, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+        (rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
                     rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
-                    rps_base_point_y, rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y,
-                    rps_h_1_x, rps_h_1_y, rps_h_2_x, rps_h_2_y, rps_link1_mass, rps_link2_mass,
-                    rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
-                    rps_potential_t,),
+                    rps_base_point_y, rps_base_point_z, rps_branch_1, rps_h_1_in_spec1_x,
+                    rps_h_1_in_spec1_y, rps_h_2_in_spec1_x, rps_h_2_in_spec1_y, rps_link1_mass,
+                    rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
+                    rps_platform_point_z, rps_potential_t, rps_potential_t_2, rps_potential_t_3,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_rps,
         (rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx,
@@ -1267,9 +1277,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1326,78 +1337,96 @@ def _run_dynamics(m, X, V):
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
-    J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx
-    J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_10 = 2.0*J_star_t_9 + J_star_xx
-    J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_14 = 2.0*J_star_t_13 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
-            rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
-            rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
-            rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
-            rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
-            rps_platform_point_z,
+        rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
+            rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
+            rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
+            rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_branch_1,
+            rps_h_1_in_spec1_x, rps_h_1_in_spec1_y, rps_h_2_in_spec1_x, rps_h_2_in_spec1_y,
+            rps_link2_mass, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -1408,244 +1437,222 @@ def _run_dynamics(m, X, V):
         rps_c_1 = inv_rps_root_1*rps_px_1
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
-        # (rps-w_1) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
-        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
-        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
-        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
-        # (rps-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rps_d_phi_2_t = inv_rps_root_1*rps_h_2_y
-        # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rps_d_G_t = (
-        inv_rps_root_1*(rps_h_2_x + inv_rps_root_1*rps_J_group_1_zz + rps_root_1*(rps_link2_mass +
-            inv_rps_root_1*rps_h_2_x))
-        )
-        # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rps_d_c_in_base_x = (
-        axis_y_rps_axes1_in_base_x*rps_d_phi_2_t - axis_x_rps_axes1_in_base_x*rps_link2_mass
-        )
-        rps_d_c_in_base_y = (
-        axis_y_rps_axes1_in_base_y*rps_d_phi_2_t - axis_x_rps_axes1_in_base_y*rps_link2_mass
-        )
-        rps_d_c_in_base_x_2 = (
-        axis_x_rps_axes1_in_base_x*rps_d_phi_2_t - axis_y_rps_axes1_in_base_x*rps_d_G_t
-        )
-        rps_d_c_in_base_y_2 = (
-        axis_x_rps_axes1_in_base_y*rps_d_phi_2_t - axis_y_rps_axes1_in_base_y*rps_d_G_t
-        )
-        rps_d_c_in_base_x_3 = (
-        axis_x_rps_axes1_in_base_x*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_x*rps_d_c_in_base_x_2
-        )
-        rps_d_c_in_base_y_3 = (
-        axis_x_rps_axes1_in_base_y*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_x_2
-        )
-        rps_d_c_in_base_z = (
-        axis_x_rps_axes1_in_base_z*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_x_2
-        )
-        rps_d_c_in_base_y_4 = (
-        axis_x_rps_axes1_in_base_y*rps_d_c_in_base_y +
-            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_y_2
-        )
-        rps_d_c_in_base_z_2 = (
-        axis_x_rps_axes1_in_base_z*rps_d_c_in_base_y +
-            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_y_2
-        )
-        rps_d_c_in_base_z_3 = (
-        axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*rps_d_phi_2_t -
-            axis_x_rps_axes1_in_base_z*rps_link2_mass) +
-            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*rps_d_phi_2_t -
-            axis_y_rps_axes1_in_base_z*rps_d_G_t)
-        )
-        # (M_ta) coupling block of M
-        rps_M_ta_t = rps_d_c_in_base_y_3*rps_q_in_base_z
-        rps_M_ta_t_2 = rps_d_c_in_base_z*rps_q_in_base_y
-        rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2
-        rps_M_ta_t_4 = rps_d_c_in_base_x_3*rps_q_in_base_z - rps_d_c_in_base_z*rps_q_in_base_x
-        rps_M_ta_t_5 = rps_d_c_in_base_x_3*rps_q_in_base_y - rps_d_c_in_base_y_3*rps_q_in_base_x
-        rps_M_ta_t_6 = rps_d_c_in_base_y_4*rps_q_in_base_z - rps_d_c_in_base_z_2*rps_q_in_base_y
-        rps_M_ta_t_7 = rps_d_c_in_base_z_2*rps_q_in_base_x
-        rps_M_ta_t_8 = rps_M_ta_t - rps_M_ta_t_7
-        rps_M_ta_t_9 = rps_d_c_in_base_y_3*rps_q_in_base_y - rps_d_c_in_base_y_4*rps_q_in_base_x
-        rps_M_ta_t_10 = rps_d_c_in_base_z_2*rps_q_in_base_z - rps_d_c_in_base_z_3*rps_q_in_base_y
-        rps_M_ta_t_11 = rps_d_c_in_base_z*rps_q_in_base_z - rps_d_c_in_base_z_3*rps_q_in_base_x
-        rps_M_ta_t_12 = rps_M_ta_t_7 - rps_M_ta_t_2
-        # (M_aa) rotational block of M
-        rps_M_aa_t = rps_M_ta_t_6*rps_q_in_base_z - rps_M_ta_t_10*rps_q_in_base_y
-        rps_M_aa_t_2 = rps_M_ta_t_8*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_y
-        rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_in_base_y + rps_M_ta_t_9*rps_q_in_base_z
-        rps_M_aa_t_4 = rps_M_ta_t_4*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_x
-        rps_M_aa_t_5 = rps_M_ta_t_12*rps_q_in_base_x + rps_M_ta_t_5*rps_q_in_base_z
-        rps_M_aa_t_6 = rps_M_ta_t_5*rps_q_in_base_y - rps_M_ta_t_9*rps_q_in_base_x
         # (rps-S_dot) velocity of the connection point
-        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
-        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
-        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y
+        rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
+        rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
         rps_S_dot_x = rps_S_dot_t + t_dot_x
         rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
         rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
-        rps_S_dot_tip_x = (
-        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
-            axis_x_rps_axes1_in_base_z*rps_S_dot_z
+        rps_S_dot_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_dot_x + axis_x_rps_axes1_y*rps_S_dot_y +
+            axis_x_rps_axes1_z*rps_S_dot_z
         )
-        # (rps-qd_2) rate of joint 2
+        # (rps-qd_1) rate of joint 1
+        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
+        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+            axis_y_rps_axes1_z*rps_S_dot_z)
         )
+        # (rps-W_1) centripetal tensor of link 1
+        rps_W_1_t = rps_qd_1*rps_qd_1
         # (rps-u_1) centripetal acceleration of the connection point
         rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
         rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
         rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
-        # (rps-W_1) centripetal tensor of link 1
-        rps_W_1_t = rps_qd_1*rps_qd_1
-        # (rps-u_1) centripetal acceleration of the connection point
-        rps_u_1_tip_y = (
-        axis_y_rps_axes1_in_base_x*rps_u_1_x + axis_y_rps_axes1_in_base_y*rps_u_1_y +
-            axis_y_rps_axes1_in_base_z*rps_u_1_z
+        rps_u_1_in_axes1_y = (
+        axis_y_rps_axes1_x*rps_u_1_x + axis_y_rps_axes1_y*rps_u_1_y + axis_y_rps_axes1_z*rps_u_1_z
         )
-        rps_u_1_tip_z = (
+        rps_u_1_in_axes1_z = (
         rps_base_frame_xz*rps_u_1_x + rps_base_frame_yz*rps_u_1_y + rps_base_frame_zz*rps_u_1_z
         )
         # (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rps_rel_o_y = rps_u_1_tip_y - 2.0*rps_S_dot_tip_x*rps_qd_1
-        # (rps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rps_qdd_1_o = inv_rps_root_1*rps_rel_o_y
+        rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
+        # (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rps_qdd_1_o = inv_rps_root_1*rps_rel_o_in_axes1_y
         # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1
-        rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1
-        rps_acc_2_o_x = (
-        axis_x_rps_axes1_in_base_x*rps_u_1_x + axis_x_rps_axes1_in_base_y*rps_u_1_y +
-            axis_x_rps_axes1_in_base_z*rps_u_1_z - rps_g_r1_x
+        rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
+        rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
+        rps_acc_2_o_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_u_1_x + axis_x_rps_axes1_y*rps_u_1_y + axis_x_rps_axes1_z*rps_u_1_z
+            - rps_g_in_axes1_x
         )
-        rps_acc_2_o_y = rps_u_1_tip_y - rps_g_r1_y
+        rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y
         # (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        rps_f_2_o_x = rps_acc_2_o_x*rps_link2_mass - rps_W_1_t*rps_h_2_x - rps_h_2_y*rps_qdd_1_o
-        rps_f_2_o_y = rps_acc_2_o_y*rps_link2_mass + rps_h_2_x*rps_qdd_1_o - rps_W_1_t*rps_h_2_y
+        rps_f_2_o_in_axes1_x = (
+        rps_acc_2_o_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
+            rps_h_2_in_spec1_y*rps_qdd_1_o
+        )
+        rps_f_2_o_in_axes1_y = (
+        rps_acc_2_o_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1_o -
+            rps_W_1_t*rps_h_2_in_spec1_y
+        )
         # (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rps_mu_1_o_z = (
-        rps_J_group_1_zz*rps_qdd_1_o + rps_acc_2_o_y*rps_h_2_x + rps_g_r1_x*rps_h_1_y -
-            rps_acc_2_o_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x
+        rps_mu_1_o_in_axes1_z = (
+        rps_J_group_1_in_axes1_zz*rps_qdd_1_o + rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x +
+            rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y -
+            rps_g_in_axes1_y*rps_h_1_in_spec1_x
+        )
+        # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_d_G_in_axes1_yy = (
+        inv_rps_root_1*(rps_h_2_in_spec1_x + inv_rps_root_1*rps_J_group_1_in_axes1_zz +
+            rps_root_1*(rps_link2_mass + inv_rps_root_1*rps_h_2_in_spec1_x))
         )
         # (rps-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rps_G_o_t = rps_f_2_o_y + inv_rps_root_1*rps_mu_1_o_z
+        rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_root_1*rps_mu_1_o_in_axes1_z
+        # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        rps_d_c_in_axes1_xy = inv_rps_root_1*rps_h_2_in_spec1_y
+        rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy - axis_x_rps_axes1_x*rps_link2_mass
+        rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy - axis_x_rps_axes1_y*rps_link2_mass
+        rps_d_c_t_3 = (
+        axis_x_rps_axes1_x*rps_d_c_in_axes1_xy - axis_y_rps_axes1_x*rps_d_G_in_axes1_yy
+        )
+        rps_d_c_t_4 = (
+        axis_x_rps_axes1_y*rps_d_c_in_axes1_xy - axis_y_rps_axes1_y*rps_d_G_in_axes1_yy
+        )
+        rps_d_c_xx = axis_x_rps_axes1_x*rps_d_c_t + axis_y_rps_axes1_x*rps_d_c_t_3
+        rps_d_c_xy = axis_x_rps_axes1_y*rps_d_c_t + axis_y_rps_axes1_y*rps_d_c_t_3
+        rps_d_c_xz = axis_x_rps_axes1_z*rps_d_c_t + axis_y_rps_axes1_z*rps_d_c_t_3
+        rps_d_c_yy = axis_x_rps_axes1_y*rps_d_c_t_2 + axis_y_rps_axes1_y*rps_d_c_t_4
+        rps_d_c_yz = axis_x_rps_axes1_z*rps_d_c_t_2 + axis_y_rps_axes1_z*rps_d_c_t_4
+        rps_d_c_zz = (
+        axis_x_rps_axes1_z*(axis_y_rps_axes1_z*rps_d_c_in_axes1_xy -
+            axis_x_rps_axes1_z*rps_link2_mass) +
+            axis_y_rps_axes1_z*(axis_x_rps_axes1_z*rps_d_c_in_axes1_xy -
+            axis_y_rps_axes1_z*rps_d_G_in_axes1_yy)
+        )
         # (rps-U) velocity and gravity terms of the leg force
-        rps_U_in_base_x = (
-        axis_x_rps_axes1_in_base_x*rps_f_2_o_x + axis_y_rps_axes1_in_base_x*rps_G_o_t
-        )
-        rps_U_in_base_y = (
-        axis_x_rps_axes1_in_base_y*rps_f_2_o_x + axis_y_rps_axes1_in_base_y*rps_G_o_t
-        )
-        rps_U_in_base_z = (
-        axis_x_rps_axes1_in_base_z*rps_f_2_o_x + axis_y_rps_axes1_in_base_z*rps_G_o_t
-        )
+        rps_U_x = axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_x*rps_G_o_in_axes1_y
+        rps_U_y = axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_y*rps_G_o_in_axes1_y
+        rps_U_z = axis_x_rps_axes1_z*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_z*rps_G_o_in_axes1_y
+        # (M_ta) coupling block of M
+        rps_M_ta_t = rps_d_c_xy*rps_q_z
+        rps_M_ta_t_2 = rps_d_c_xz*rps_q_y
+        rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2
+        rps_M_ta_t_4 = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x
+        rps_M_ta_t_5 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x
+        rps_M_ta_t_6 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y
+        rps_M_ta_t_7 = rps_d_c_yz*rps_q_x
+        rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t
+        rps_M_ta_t_9 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x
+        rps_M_ta_t_10 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y
+        rps_M_ta_t_11 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z
+        rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7
+        # (M_aa) rotational block of M
+        rps_M_aa_t = rps_M_ta_t_10*rps_q_y - rps_M_ta_t_6*rps_q_z
+        rps_M_aa_t_2 = rps_M_ta_t_11*rps_q_y - rps_M_ta_t_8*rps_q_z
+        rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_y - rps_M_ta_t_9*rps_q_z
+        rps_M_aa_t_4 = rps_M_ta_t_11*rps_q_x + rps_M_ta_t_4*rps_q_z
+        rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x
+        rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y
         # (Z_a) rotational part of Z
-        rps_Z_a_t = rps_U_in_base_z*rps_q_in_base_y - rps_U_in_base_y*rps_q_in_base_z
-        rps_Z_a_t_2 = rps_U_in_base_x*rps_q_in_base_z - rps_U_in_base_z*rps_q_in_base_x
-        rps_Z_a_t_3 = rps_U_in_base_y*rps_q_in_base_x - rps_U_in_base_x*rps_q_in_base_y
+        rps_Z_a_t = rps_U_z*rps_q_y - rps_U_y*rps_q_z
+        rps_Z_a_t_2 = rps_U_x*rps_q_z - rps_U_z*rps_q_x
+        rps_Z_a_t_3 = rps_U_y*rps_q_x - rps_U_x*rps_q_y
         # (rps-H_a_2) moment of the column's unit force about the platform origin
-        rps_H_a_2_x = (
-        axis_x_rps_axes1_in_base_z*rps_q_in_base_y - axis_x_rps_axes1_in_base_y*rps_q_in_base_z
-        )
-        rps_H_a_2_y = (
-        axis_x_rps_axes1_in_base_x*rps_q_in_base_z - axis_x_rps_axes1_in_base_z*rps_q_in_base_x
-        )
-        rps_H_a_2_z = (
-        axis_x_rps_axes1_in_base_y*rps_q_in_base_x - axis_x_rps_axes1_in_base_x*rps_q_in_base_y
-        )
+        rps_H_a_2_x = axis_x_rps_axes1_z*rps_q_y - axis_x_rps_axes1_y*rps_q_z
+        rps_H_a_2_y = axis_x_rps_axes1_x*rps_q_z - axis_x_rps_axes1_z*rps_q_x
+        rps_H_a_2_z = axis_x_rps_axes1_y*rps_q_x - axis_x_rps_axes1_x*rps_q_y
         # (rps-Hk_a_1) moment of the column's unit force about the platform origin
-        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y - rps_base_frame_yz*rps_q_in_base_z
-        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z - rps_base_frame_zz*rps_q_in_base_x
-        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x - rps_base_frame_xz*rps_q_in_base_y
+        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z
+        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x
+        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y
         ok = (
         ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rps_d_c_in_base_x_3, rps_d_c_in_base_y_3, rps_d_c_in_base_z, rps_d_c_in_base_y_4,
-            rps_d_c_in_base_z_2, rps_d_c_in_base_z_3, rps_M_ta_t_3, rps_M_ta_t_4,
-            rps_M_ta_t_5, rps_M_ta_t_6, rps_M_ta_t_8, rps_M_ta_t_9, rps_M_ta_t_10,
-            rps_M_ta_t_11, rps_M_ta_t_12, rps_M_aa_t, rps_M_aa_t_2, rps_M_aa_t_3,
-            rps_M_aa_t_4, rps_M_aa_t_5, rps_M_aa_t_6, rps_U_in_base_x, rps_U_in_base_y,
-            rps_U_in_base_z, rps_Z_a_t, rps_Z_a_t_2, rps_Z_a_t_3,
+        rps_d_c_xx, rps_d_c_xy, rps_d_c_xz, rps_d_c_yy, rps_d_c_yz, rps_d_c_zz, rps_M_ta_t_3,
+            -rps_M_ta_t_4, rps_M_ta_t_5, rps_M_ta_t_6, rps_M_ta_t_8, rps_M_ta_t_9,
+            rps_M_ta_t_10, rps_M_ta_t_11, rps_M_ta_t_12, rps_M_aa_t, rps_M_aa_t_2,
+            rps_M_aa_t_3, rps_M_aa_t_4, rps_M_aa_t_5, rps_M_aa_t_6, rps_U_x, rps_U_y, rps_U_z,
+            rps_Z_a_t, rps_Z_a_t_2, rps_Z_a_t_3,
         ))
-        out_H[_H_rps[0][leg]] = axis_x_rps_axes1_in_base_x
-        out_H[_H_rps[1][leg]] = axis_x_rps_axes1_in_base_y
-        out_H[_H_rps[2][leg]] = axis_x_rps_axes1_in_base_z
+        # (rps-w_2) reciprocal vector 2
+        out_H[_H_rps[0][leg]] = axis_x_rps_axes1_x
+        out_H[_H_rps[1][leg]] = axis_x_rps_axes1_y
+        out_H[_H_rps[2][leg]] = axis_x_rps_axes1_z
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rps[3][leg]] = rps_H_a_2_x
         out_H[_H_rps[4][leg]] = rps_H_a_2_y
         out_H[_H_rps[5][leg]] = rps_H_a_2_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_rps[0][leg]] = rps_base_frame_xz
         out_Hk[_Hk_rps[1][leg]] = rps_base_frame_yz
         out_Hk[_Hk_rps[2][leg]] = rps_base_frame_zz
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_rps[3][leg]] = rps_Hk_a_1_x
         out_Hk[_Hk_rps[4][leg]] = rps_Hk_a_1_y
         out_Hk[_Hk_rps[5][leg]] = rps_Hk_a_1_z
-        out_constraint_bias[_constraint_bias_rps[0][leg]] = rps_u_1_tip_z
+        # (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        out_constraint_bias[_constraint_bias_rps[0][leg]] = rps_u_1_in_axes1_z
     (
-    total_rps_xx, total_rps_xy, total_rps_xz, total_rps_yy, total_rps_yz, total_rps_zz,
-        total_rps_xx_2, total_rps_xy_2, total_rps_xz_2, total_rps_yx, total_rps_yy_2,
-        total_rps_yz_2, total_rps_zx, total_rps_zy, total_rps_zz_2, total_rps_xx_3,
-        total_rps_xy_3, total_rps_xz_3, total_rps_yy_3, total_rps_yz_3, total_rps_zz_3,
-        total_rps_x, total_rps_y, total_rps_z, total_rps_x_2, total_rps_y_2, total_rps_z_2,
+    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_rps_xy, M_ta_rps_xz,
+        M_ta_rps_yx, M_ta_yy, M_ta_rps_yz, M_ta_rps_zx, M_ta_rps_zy, M_ta_zz, M_aa_rps_xx,
+        M_aa_rps_xy, M_aa_rps_xz, M_aa_t, M_aa_rps_yz, M_aa_rps_zz, Z_t_rps_x, Z_t_rps_y,
+        Z_t_rps_z, Z_a_rps_x, Z_a_rps_y, Z_a_rps_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = platform_mass - total_rps_xx
-    M_tt_yy = platform_mass - total_rps_yy
-    M_tt_zz = platform_mass - total_rps_zz
+    M_tt_xx = platform_mass - M_tt_t
+    M_tt_yy = platform_mass - M_tt_t_4
+    M_tt_zz = platform_mass - M_tt_t_6
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rps_xy_2
-    M_ta_xz = total_rps_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rps_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rps_yz_2
-    M_ta_zx = h_star_in_base_y + total_rps_zx
-    M_ta_zy = -h_star_in_base_x - total_rps_zy
+    M_ta_xy = M_ta_rps_xy + h_star_z
+    M_ta_xz = M_ta_rps_xz - h_star_y
+    M_ta_yx = M_ta_rps_yx - h_star_z
+    M_ta_yz = M_ta_rps_yz + h_star_x
+    M_ta_zx = M_ta_rps_zx + h_star_y
+    M_ta_zy = M_ta_rps_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_10 - total_rps_xx_3
-    M_aa_xy = J_star_t_11 + total_rps_xy_3
-    M_aa_xz = J_star_t_12 - total_rps_xz_3
-    M_aa_yy = J_star_t_14 - total_rps_yy_3
-    M_aa_yz = J_star_t_15 + total_rps_yz_3
-    M_aa_zz = J_star_t_17 - total_rps_zz_3
+    M_aa_xx = J_star_xx + M_aa_rps_xx
+    M_aa_xy = J_star_xy + M_aa_rps_xy
+    M_aa_xz = J_star_xz + M_aa_rps_xz
+    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_yz = J_star_yz + M_aa_rps_yz
+    M_aa_zz = J_star_zz + M_aa_rps_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rps_x
-    Z_t_y = Z_p_y + total_rps_y
-    Z_t_z = Z_p_z + total_rps_z
+    Z_t_x = Z_p_x + Z_t_rps_x
+    Z_t_y = Z_p_y + Z_t_rps_y
+    Z_t_z = Z_p_z + Z_t_rps_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rps_x_2
-    Z_a_y = Z_q_in_base_y + total_rps_y_2
-    Z_a_z = Z_q_in_base_z + total_rps_z_2
+    Z_a_x = Z_a_rps_x + Z_q_x
+    Z_a_y = Z_a_rps_y + Z_q_y
+    Z_a_z = Z_a_rps_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rps_xy
-    out_M[6] = -total_rps_xy
-    out_M[2] = -total_rps_xz
-    out_M[12] = -total_rps_xz
+    out_M[1] = -M_tt_t_2
+    out_M[6] = -M_tt_t_2
+    out_M[2] = -M_tt_t_3
+    out_M[12] = -M_tt_t_3
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rps_yz
-    out_M[13] = -total_rps_yz
+    out_M[8] = -M_tt_t_5
+    out_M[13] = -M_tt_t_5
     out_M[14] = M_tt_zz
-    out_M[3] = total_rps_xx_2
-    out_M[18] = total_rps_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rps_yy_2
-    out_M[25] = -total_rps_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_rps_zz_2
-    out_M[32] = -total_rps_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1655,9 +1662,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -1669,8 +1678,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1710,53 +1720,54 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
-    J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx
-    J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_10 = 2.0*J_star_t_9 + J_star_xx
-    J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_14 = 2.0*J_star_t_13 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+        rps_J_group_1_in_axes1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
             rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
-            rps_base_point_y, rps_base_point_z, rps_branch_1, rps_h_2_x, rps_h_2_y,
-            rps_link2_mass, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+            rps_base_point_y, rps_base_point_z, rps_branch_1, rps_h_2_in_spec1_x,
+            rps_h_2_in_spec1_y, rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
+            rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -1767,141 +1778,117 @@ def _run_M(m, X):
         rps_c_1 = inv_rps_root_1*rps_px_1
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
-        # (rps-w_1) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
-        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
-        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
-        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
-        # (rps-d_phi_2) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-        rps_d_phi_2_t = inv_rps_root_1*rps_h_2_y
+        # (rps-w_2) reciprocal vector 2
+        rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rps_d_G_t = (
-        inv_rps_root_1*(rps_h_2_x + inv_rps_root_1*rps_J_group_1_zz + rps_root_1*(rps_link2_mass +
-            inv_rps_root_1*rps_h_2_x))
+        rps_d_G_in_axes1_yy = (
+        inv_rps_root_1*(rps_h_2_in_spec1_x + inv_rps_root_1*rps_J_group_1_in_axes1_zz +
+            rps_root_1*(rps_link2_mass + inv_rps_root_1*rps_h_2_in_spec1_x))
         )
         # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rps_d_c_in_base_x = (
-        axis_y_rps_axes1_in_base_x*rps_d_phi_2_t - axis_x_rps_axes1_in_base_x*rps_link2_mass
-        )
-        rps_d_c_in_base_y = (
-        axis_y_rps_axes1_in_base_y*rps_d_phi_2_t - axis_x_rps_axes1_in_base_y*rps_link2_mass
-        )
-        rps_d_c_in_base_x_2 = (
-        axis_x_rps_axes1_in_base_x*rps_d_phi_2_t - axis_y_rps_axes1_in_base_x*rps_d_G_t
-        )
-        rps_d_c_in_base_y_2 = (
-        axis_x_rps_axes1_in_base_y*rps_d_phi_2_t - axis_y_rps_axes1_in_base_y*rps_d_G_t
-        )
-        rps_d_c_in_base_x_3 = (
-        axis_x_rps_axes1_in_base_x*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_x*rps_d_c_in_base_x_2
-        )
-        rps_d_c_in_base_y_3 = (
-        axis_x_rps_axes1_in_base_y*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_x_2
-        )
-        rps_d_c_in_base_z = (
-        axis_x_rps_axes1_in_base_z*rps_d_c_in_base_x +
-            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_x_2
-        )
-        rps_d_c_in_base_y_4 = (
-        axis_x_rps_axes1_in_base_y*rps_d_c_in_base_y +
-            axis_y_rps_axes1_in_base_y*rps_d_c_in_base_y_2
-        )
-        rps_d_c_in_base_z_2 = (
-        axis_x_rps_axes1_in_base_z*rps_d_c_in_base_y +
-            axis_y_rps_axes1_in_base_z*rps_d_c_in_base_y_2
-        )
-        rps_d_c_in_base_z_3 = (
-        axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*rps_d_phi_2_t -
-            axis_x_rps_axes1_in_base_z*rps_link2_mass) +
-            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*rps_d_phi_2_t -
-            axis_y_rps_axes1_in_base_z*rps_d_G_t)
+        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
+        rps_d_c_in_axes1_xy = inv_rps_root_1*rps_h_2_in_spec1_y
+        rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_x
+        rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_y
+        rps_d_c_t_3 = rps_d_c_in_axes1_xy*rps_w_2_x - axis_y_rps_axes1_x*rps_d_G_in_axes1_yy
+        rps_d_c_t_4 = rps_d_c_in_axes1_xy*rps_w_2_y - axis_y_rps_axes1_y*rps_d_G_in_axes1_yy
+        rps_d_c_xx = axis_y_rps_axes1_x*rps_d_c_t_3 + rps_d_c_t*rps_w_2_x
+        rps_d_c_xy = axis_y_rps_axes1_y*rps_d_c_t_3 + rps_d_c_t*rps_w_2_y
+        rps_d_c_xz = axis_y_rps_axes1_z*rps_d_c_t_3 + rps_d_c_t*rps_w_2_z
+        rps_d_c_yy = axis_y_rps_axes1_y*rps_d_c_t_4 + rps_d_c_t_2*rps_w_2_y
+        rps_d_c_yz = axis_y_rps_axes1_z*rps_d_c_t_4 + rps_d_c_t_2*rps_w_2_z
+        rps_d_c_zz = (
+        axis_y_rps_axes1_z*(rps_d_c_in_axes1_xy*rps_w_2_z -
+            axis_y_rps_axes1_z*rps_d_G_in_axes1_yy) +
+            rps_w_2_z*(axis_y_rps_axes1_z*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_z)
         )
         # (M_ta) coupling block of M
-        rps_M_ta_t = rps_d_c_in_base_y_3*rps_q_in_base_z
-        rps_M_ta_t_2 = rps_d_c_in_base_z*rps_q_in_base_y
+        rps_M_ta_t = rps_d_c_xy*rps_q_z
+        rps_M_ta_t_2 = rps_d_c_xz*rps_q_y
         rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2
-        rps_M_ta_t_4 = rps_d_c_in_base_x_3*rps_q_in_base_z - rps_d_c_in_base_z*rps_q_in_base_x
-        rps_M_ta_t_5 = rps_d_c_in_base_x_3*rps_q_in_base_y - rps_d_c_in_base_y_3*rps_q_in_base_x
-        rps_M_ta_t_6 = rps_d_c_in_base_y_4*rps_q_in_base_z - rps_d_c_in_base_z_2*rps_q_in_base_y
-        rps_M_ta_t_7 = rps_d_c_in_base_z_2*rps_q_in_base_x
-        rps_M_ta_t_8 = rps_M_ta_t - rps_M_ta_t_7
-        rps_M_ta_t_9 = rps_d_c_in_base_y_3*rps_q_in_base_y - rps_d_c_in_base_y_4*rps_q_in_base_x
-        rps_M_ta_t_10 = rps_d_c_in_base_z_2*rps_q_in_base_z - rps_d_c_in_base_z_3*rps_q_in_base_y
-        rps_M_ta_t_11 = rps_d_c_in_base_z*rps_q_in_base_z - rps_d_c_in_base_z_3*rps_q_in_base_x
-        rps_M_ta_t_12 = rps_M_ta_t_7 - rps_M_ta_t_2
+        rps_M_ta_t_4 = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x
+        rps_M_ta_t_5 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x
+        rps_M_ta_t_6 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y
+        rps_M_ta_t_7 = rps_d_c_yz*rps_q_x
+        rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t
+        rps_M_ta_t_9 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x
+        rps_M_ta_t_10 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y
+        rps_M_ta_t_11 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z
+        rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7
         # (M_aa) rotational block of M
-        rps_M_aa_t = rps_M_ta_t_6*rps_q_in_base_z - rps_M_ta_t_10*rps_q_in_base_y
-        rps_M_aa_t_2 = rps_M_ta_t_8*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_y
-        rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_in_base_y + rps_M_ta_t_9*rps_q_in_base_z
-        rps_M_aa_t_4 = rps_M_ta_t_4*rps_q_in_base_z - rps_M_ta_t_11*rps_q_in_base_x
-        rps_M_aa_t_5 = rps_M_ta_t_12*rps_q_in_base_x + rps_M_ta_t_5*rps_q_in_base_z
-        rps_M_aa_t_6 = rps_M_ta_t_5*rps_q_in_base_y - rps_M_ta_t_9*rps_q_in_base_x
+        rps_M_aa_t = rps_M_ta_t_10*rps_q_y - rps_M_ta_t_6*rps_q_z
+        rps_M_aa_t_2 = rps_M_ta_t_11*rps_q_y - rps_M_ta_t_8*rps_q_z
+        rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_y - rps_M_ta_t_9*rps_q_z
+        rps_M_aa_t_4 = rps_M_ta_t_11*rps_q_x + rps_M_ta_t_4*rps_q_z
+        rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x
+        rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y
         ok = (
         ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rps_d_c_in_base_x_3, rps_d_c_in_base_y_3, rps_d_c_in_base_z, rps_d_c_in_base_y_4,
-            rps_d_c_in_base_z_2, rps_d_c_in_base_z_3, rps_M_ta_t_3, rps_M_ta_t_4,
-            rps_M_ta_t_5, rps_M_ta_t_6, rps_M_ta_t_8, rps_M_ta_t_9, rps_M_ta_t_10,
-            rps_M_ta_t_11, rps_M_ta_t_12, rps_M_aa_t, rps_M_aa_t_2, rps_M_aa_t_3,
-            rps_M_aa_t_4, rps_M_aa_t_5, rps_M_aa_t_6,
+        rps_d_c_xx, rps_d_c_xy, rps_d_c_xz, rps_d_c_yy, rps_d_c_yz, rps_d_c_zz, rps_M_ta_t_3,
+            -rps_M_ta_t_4, rps_M_ta_t_5, rps_M_ta_t_6, rps_M_ta_t_8, rps_M_ta_t_9,
+            rps_M_ta_t_10, rps_M_ta_t_11, rps_M_ta_t_12, rps_M_aa_t, rps_M_aa_t_2,
+            rps_M_aa_t_3, rps_M_aa_t_4, rps_M_aa_t_5, rps_M_aa_t_6,
         ))
     (
-    total_rps_xx, total_rps_xy, total_rps_xz, total_rps_yy, total_rps_yz, total_rps_zz,
-        total_rps_xx_2, total_rps_xy_2, total_rps_xz_2, total_rps_yx, total_rps_yy_2,
-        total_rps_yz_2, total_rps_zx, total_rps_zy, total_rps_zz_2, total_rps_xx_3,
-        total_rps_xy_3, total_rps_xz_3, total_rps_yy_3, total_rps_yz_3, total_rps_zz_3,
+    M_tt_t, M_tt_t_2, M_tt_t_3, M_tt_t_4, M_tt_t_5, M_tt_t_6, M_ta_xx, M_ta_rps_xy, M_ta_rps_xz,
+        M_ta_rps_yx, M_ta_yy, M_ta_rps_yz, M_ta_rps_zx, M_ta_rps_zy, M_ta_zz, M_aa_rps_xx,
+        M_aa_rps_xy, M_aa_rps_xz, M_aa_t, M_aa_rps_yz, M_aa_rps_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = platform_mass - total_rps_xx
-    M_tt_yy = platform_mass - total_rps_yy
-    M_tt_zz = platform_mass - total_rps_zz
+    M_tt_xx = platform_mass - M_tt_t
+    M_tt_yy = platform_mass - M_tt_t_4
+    M_tt_zz = platform_mass - M_tt_t_6
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z - total_rps_xy_2
-    M_ta_xz = total_rps_xz_2 - h_star_in_base_y
-    M_ta_yx = total_rps_yx - h_star_in_base_z
-    M_ta_yz = h_star_in_base_x + total_rps_yz_2
-    M_ta_zx = h_star_in_base_y + total_rps_zx
-    M_ta_zy = -h_star_in_base_x - total_rps_zy
+    M_ta_xy = M_ta_rps_xy + h_star_z
+    M_ta_xz = M_ta_rps_xz - h_star_y
+    M_ta_yx = M_ta_rps_yx - h_star_z
+    M_ta_yz = M_ta_rps_yz + h_star_x
+    M_ta_zx = M_ta_rps_zx + h_star_y
+    M_ta_zy = M_ta_rps_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_10 - total_rps_xx_3
-    M_aa_xy = J_star_t_11 + total_rps_xy_3
-    M_aa_xz = J_star_t_12 - total_rps_xz_3
-    M_aa_yy = J_star_t_14 - total_rps_yy_3
-    M_aa_yz = J_star_t_15 + total_rps_yz_3
-    M_aa_zz = J_star_t_17 - total_rps_zz_3
+    M_aa_xx = J_star_xx + M_aa_rps_xx
+    M_aa_xy = J_star_xy + M_aa_rps_xy
+    M_aa_xz = J_star_xz + M_aa_rps_xz
+    M_aa_yy = J_star_yy - M_aa_t
+    M_aa_yz = J_star_yz + M_aa_rps_yz
+    M_aa_zz = J_star_zz + M_aa_rps_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_rps_xy
-    out_M[6] = -total_rps_xy
-    out_M[2] = -total_rps_xz
-    out_M[12] = -total_rps_xz
+    out_M[1] = -M_tt_t_2
+    out_M[6] = -M_tt_t_2
+    out_M[2] = -M_tt_t_3
+    out_M[12] = -M_tt_t_3
     out_M[7] = M_tt_yy
-    out_M[8] = -total_rps_yz
-    out_M[13] = -total_rps_yz
+    out_M[8] = -M_tt_t_5
+    out_M[13] = -M_tt_t_5
     out_M[14] = M_tt_zz
-    out_M[3] = total_rps_xx_2
-    out_M[18] = total_rps_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = -total_rps_yy_2
-    out_M[25] = -total_rps_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = -total_rps_zz_2
-    out_M[32] = -total_rps_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -1919,8 +1906,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1973,61 +1961,79 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
-            rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
-            rps_base_point_y, rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x,
-            rps_h_1_y, rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x,
-            rps_platform_point_y, rps_platform_point_z,
+        rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
+            rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_zx,
+            rps_base_frame_zy, rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_branch_1,
+            rps_h_1_in_spec1_x, rps_h_1_in_spec1_y, rps_h_2_in_spec1_x, rps_h_2_in_spec1_y,
+            rps_link2_mass, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -2038,96 +2044,95 @@ def _run_Z(m, X, V):
         rps_c_1 = inv_rps_root_1*rps_px_1
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
-        # (rps-w_1) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
-        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
-        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
-        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-S_dot) velocity of the connection point
-        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
-        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
-        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y
+        rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
+        rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
         rps_S_dot_x = rps_S_dot_t + t_dot_x
         rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
         rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
-        rps_S_dot_tip_x = (
-        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
-            axis_x_rps_axes1_in_base_z*rps_S_dot_z
+        rps_S_dot_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_dot_x + axis_x_rps_axes1_y*rps_S_dot_y +
+            axis_x_rps_axes1_z*rps_S_dot_z
         )
-        # (rps-qd_2) rate of joint 2
+        # (rps-qd_1) rate of joint 1
+        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
+        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+            axis_y_rps_axes1_z*rps_S_dot_z)
         )
+        # (rps-W_1) centripetal tensor of link 1
+        rps_W_1_t = rps_qd_1*rps_qd_1
         # (rps-u_1) centripetal acceleration of the connection point
         rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
         rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
         rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
-        # (rps-W_1) centripetal tensor of link 1
-        rps_W_1_t = rps_qd_1*rps_qd_1
-        # (rps-u_1) centripetal acceleration of the connection point
-        rps_u_1_tip_y = (
-        axis_y_rps_axes1_in_base_x*rps_u_1_x + axis_y_rps_axes1_in_base_y*rps_u_1_y +
-            axis_y_rps_axes1_in_base_z*rps_u_1_z
+        rps_u_1_in_axes1_y = (
+        axis_y_rps_axes1_x*rps_u_1_x + axis_y_rps_axes1_y*rps_u_1_y + axis_y_rps_axes1_z*rps_u_1_z
         )
         # (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        rps_rel_o_y = rps_u_1_tip_y - 2.0*rps_S_dot_tip_x*rps_qd_1
-        # (rps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        rps_qdd_1_o = inv_rps_root_1*rps_rel_o_y
+        rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
+        # (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        rps_qdd_1_o = inv_rps_root_1*rps_rel_o_in_axes1_y
         # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1
-        rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1
-        rps_acc_2_o_x = (
-        axis_x_rps_axes1_in_base_x*rps_u_1_x + axis_x_rps_axes1_in_base_y*rps_u_1_y +
-            axis_x_rps_axes1_in_base_z*rps_u_1_z - rps_g_r1_x
+        rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
+        rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
+        rps_acc_2_o_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_u_1_x + axis_x_rps_axes1_y*rps_u_1_y + axis_x_rps_axes1_z*rps_u_1_z
+            - rps_g_in_axes1_x
         )
-        rps_acc_2_o_y = rps_u_1_tip_y - rps_g_r1_y
+        rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y
         # (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        rps_f_2_o_x = rps_acc_2_o_x*rps_link2_mass - rps_W_1_t*rps_h_2_x - rps_h_2_y*rps_qdd_1_o
-        rps_f_2_o_y = rps_acc_2_o_y*rps_link2_mass + rps_h_2_x*rps_qdd_1_o - rps_W_1_t*rps_h_2_y
+        rps_f_2_o_in_axes1_x = (
+        rps_acc_2_o_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
+            rps_h_2_in_spec1_y*rps_qdd_1_o
+        )
+        rps_f_2_o_in_axes1_y = (
+        rps_acc_2_o_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1_o -
+            rps_W_1_t*rps_h_2_in_spec1_y
+        )
         # (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-        rps_mu_1_o_z = (
-        rps_J_group_1_zz*rps_qdd_1_o + rps_acc_2_o_y*rps_h_2_x + rps_g_r1_x*rps_h_1_y -
-            rps_acc_2_o_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x
+        rps_mu_1_o_in_axes1_z = (
+        rps_J_group_1_in_axes1_zz*rps_qdd_1_o + rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x +
+            rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y -
+            rps_g_in_axes1_y*rps_h_1_in_spec1_x
         )
         # (rps-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        rps_G_o_t = rps_f_2_o_y + inv_rps_root_1*rps_mu_1_o_z
+        rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_root_1*rps_mu_1_o_in_axes1_z
         # (rps-U) velocity and gravity terms of the leg force
-        rps_U_in_base_x = (
-        axis_x_rps_axes1_in_base_x*rps_f_2_o_x + axis_y_rps_axes1_in_base_x*rps_G_o_t
-        )
-        rps_U_in_base_y = (
-        axis_x_rps_axes1_in_base_y*rps_f_2_o_x + axis_y_rps_axes1_in_base_y*rps_G_o_t
-        )
-        rps_U_in_base_z = (
-        axis_x_rps_axes1_in_base_z*rps_f_2_o_x + axis_y_rps_axes1_in_base_z*rps_G_o_t
-        )
+        rps_U_x = axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_x*rps_G_o_in_axes1_y
+        rps_U_y = axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_y*rps_G_o_in_axes1_y
+        rps_U_z = axis_x_rps_axes1_z*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_z*rps_G_o_in_axes1_y
         # (Z_a) rotational part of Z
-        rps_Z_a_t = rps_U_in_base_z*rps_q_in_base_y - rps_U_in_base_y*rps_q_in_base_z
-        rps_Z_a_t_2 = rps_U_in_base_x*rps_q_in_base_z - rps_U_in_base_z*rps_q_in_base_x
-        rps_Z_a_t_3 = rps_U_in_base_y*rps_q_in_base_x - rps_U_in_base_x*rps_q_in_base_y
+        rps_Z_a_t = rps_U_z*rps_q_y - rps_U_y*rps_q_z
+        rps_Z_a_t_2 = rps_U_x*rps_q_z - rps_U_z*rps_q_x
+        rps_Z_a_t_3 = rps_U_y*rps_q_x - rps_U_x*rps_q_y
         ok = (
         ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rps_U_in_base_x, rps_U_in_base_y, rps_U_in_base_z, rps_Z_a_t, rps_Z_a_t_2,
-            rps_Z_a_t_3,
+        rps_U_x, rps_U_y, rps_U_z, rps_Z_a_t, rps_Z_a_t_2, rps_Z_a_t_3,
         ))
-    total_rps_x, total_rps_y, total_rps_z, total_rps_x_2, total_rps_y_2, total_rps_z_2 = sums
+    Z_t_rps_x, Z_t_rps_y, Z_t_rps_z, Z_a_rps_x, Z_a_rps_y, Z_a_rps_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_rps_x
-    Z_t_y = Z_p_y + total_rps_y
-    Z_t_z = Z_p_z + total_rps_z
+    Z_t_x = Z_p_x + Z_t_rps_x
+    Z_t_y = Z_p_y + Z_t_rps_y
+    Z_t_z = Z_p_z + Z_t_rps_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_rps_x_2
-    Z_a_y = Z_q_in_base_y + total_rps_y_2
-    Z_a_z = Z_q_in_base_z + total_rps_z_2
+    Z_a_x = Z_a_rps_x + Z_q_x
+    Z_a_y = Z_a_rps_y + Z_q_y
+    Z_a_z = Z_a_rps_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2183,25 +2188,25 @@ def _run_H(m, X):
             rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -2212,27 +2217,23 @@ def _run_H(m, X):
         rps_c_1 = inv_rps_root_1*rps_px_1
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
-        # (rps-w_1) reciprocal vector 1
-        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        # (rps-w_2) reciprocal vector 2
+        rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-H_a_2) moment of the column's unit force about the platform origin
-        rps_H_a_2_x = (
-        axis_x_rps_axes1_in_base_z*rps_q_in_base_y - axis_x_rps_axes1_in_base_y*rps_q_in_base_z
-        )
-        rps_H_a_2_y = (
-        axis_x_rps_axes1_in_base_x*rps_q_in_base_z - axis_x_rps_axes1_in_base_z*rps_q_in_base_x
-        )
-        rps_H_a_2_z = (
-        axis_x_rps_axes1_in_base_y*rps_q_in_base_x - axis_x_rps_axes1_in_base_x*rps_q_in_base_y
-        )
+        rps_H_a_2_x = rps_q_y*rps_w_2_z - rps_q_z*rps_w_2_y
+        rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z
+        rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x
         ok = (
         ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
             > _TOLERANCE * 0.75))
         )
-        out_H[_H_rps[0][leg]] = axis_x_rps_axes1_in_base_x
-        out_H[_H_rps[1][leg]] = axis_x_rps_axes1_in_base_y
-        out_H[_H_rps[2][leg]] = axis_x_rps_axes1_in_base_z
+        # (rps-w_2) reciprocal vector 2
+        out_H[_H_rps[0][leg]] = rps_w_2_x
+        out_H[_H_rps[1][leg]] = rps_w_2_y
+        out_H[_H_rps[2][leg]] = rps_w_2_z
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rps[3][leg]] = rps_H_a_2_x
         out_H[_H_rps[4][leg]] = rps_H_a_2_y
         out_H[_H_rps[5][leg]] = rps_H_a_2_z
@@ -2278,23 +2279,24 @@ def _run_Hk(m, X):
         rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz, rps_platform_point_x,
             rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
-        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y - rps_base_frame_yz*rps_q_in_base_z
-        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z - rps_base_frame_zz*rps_q_in_base_x
-        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x - rps_base_frame_xz*rps_q_in_base_y
+        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z
+        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x
+        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_rps[0][leg]] = rps_base_frame_xz
         out_Hk[_Hk_rps[1][leg]] = rps_base_frame_yz
         out_Hk[_Hk_rps[2][leg]] = rps_base_frame_zz
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_rps[3][leg]] = rps_Hk_a_1_x
         out_Hk[_Hk_rps[4][leg]] = rps_Hk_a_1_y
         out_Hk[_Hk_rps[5][leg]] = rps_Hk_a_1_z
@@ -2347,27 +2349,26 @@ def _run_constraint_bias(m, X, V):
         rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz, rps_platform_point_x,
             rps_platform_point_y, rps_platform_point_z,
         ) = k
-        # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        # (rps-u_1) centripetal acceleration of the connection point
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        # (rps-S_dot) velocity of the connection point
-        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
-        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
-        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
-        # (rps-u_1) centripetal acceleration of the connection point
-        rps_u_1_tip_z = (
-        rps_base_frame_xz*(omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2) +
-            rps_base_frame_yz*(omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3) +
-            rps_base_frame_zz*(omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t)
+        rps_u_1_t = omega_y*rps_q_z - omega_z*rps_q_y
+        rps_u_1_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
+        rps_u_1_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
+        rps_u_1_in_axes1_z = (
+        rps_base_frame_xz*(omega_y*rps_u_1_t_3 - omega_z*rps_u_1_t_2) +
+            rps_base_frame_yz*(omega_z*rps_u_1_t - omega_x*rps_u_1_t_3) +
+            rps_base_frame_zz*(omega_x*rps_u_1_t_2 - omega_y*rps_u_1_t)
         )
-        out_constraint_bias[_constraint_bias_rps[0][leg]] = rps_u_1_tip_z
+        # (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+        out_constraint_bias[_constraint_bias_rps[0][leg]] = rps_u_1_in_axes1_z
     return ok, (out_constraint_bias,)
 
 
@@ -2376,8 +2377,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2444,94 +2446,107 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz +
-        alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) -
+        h_star_x*(f_p_t_2 + f_p_t_3)
     )
     f_p_y = (
-    a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz -
-        alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) -
+        h_star_y*(f_p_t + f_p_t_3)
     )
     f_p_z = (
-    a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz +
-        alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) -
+        h_star_z*(f_p_t + f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
-            rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
-            rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
-            rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
-            rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
-            rps_platform_point_z,
+        rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
+            rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
+            rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
+            rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_branch_1,
+            rps_h_1_in_spec1_x, rps_h_1_in_spec1_y, rps_h_2_in_spec1_x, rps_h_2_in_spec1_y,
+            rps_link2_mass, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -2542,126 +2557,124 @@ def _run_required(m, X, V, A):
         rps_c_1 = inv_rps_root_1*rps_px_1
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
-        # (rps-w_1) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
-        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
-        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
-        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-S_dot) velocity of the connection point
-        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
-        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
-        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y
+        rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
+        rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
         rps_S_dot_x = rps_S_dot_t + t_dot_x
         rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
         rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
-        rps_S_dot_tip_x = (
-        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
-            axis_x_rps_axes1_in_base_z*rps_S_dot_z
+        rps_S_dot_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_dot_x + axis_x_rps_axes1_y*rps_S_dot_y +
+            axis_x_rps_axes1_z*rps_S_dot_z
         )
-        # (rps-qd_2) rate of joint 2
+        # (rps-qd_1) rate of joint 1
+        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
+        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+            axis_y_rps_axes1_z*rps_S_dot_z)
         )
         # (rps-W_1) centripetal tensor of link 1
         rps_W_1_t = rps_qd_1*rps_qd_1
-        # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1
-        rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1
-        # (rps-H_a_2) moment of the column's unit force about the platform origin
-        rps_H_a_2_x = (
-        axis_x_rps_axes1_in_base_z*rps_q_in_base_y - axis_x_rps_axes1_in_base_y*rps_q_in_base_z
-        )
-        rps_H_a_2_y = (
-        axis_x_rps_axes1_in_base_x*rps_q_in_base_z - axis_x_rps_axes1_in_base_z*rps_q_in_base_x
-        )
-        rps_H_a_2_z = (
-        axis_x_rps_axes1_in_base_y*rps_q_in_base_x - axis_x_rps_axes1_in_base_x*rps_q_in_base_y
-        )
-        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
-        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y - rps_base_frame_yz*rps_q_in_base_z
-        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z - rps_base_frame_zz*rps_q_in_base_x
-        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x - rps_base_frame_xz*rps_q_in_base_y
         # (rps-a_p) acceleration of the connection point without its centripetal part
-        rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y
-        rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z
-        rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x
+        rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y
+        rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z
+        rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x
         # (rps-S_ddot) acceleration of the connection point
         rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
         rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
         rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
-        rps_S_ddot_tip_y = (
-        axis_y_rps_axes1_in_base_x*rps_S_ddot_x + axis_y_rps_axes1_in_base_y*rps_S_ddot_y +
-            axis_y_rps_axes1_in_base_z*rps_S_ddot_z
+        rps_S_ddot_in_axes1_y = (
+        axis_y_rps_axes1_x*rps_S_ddot_x + axis_y_rps_axes1_y*rps_S_ddot_y +
+            axis_y_rps_axes1_z*rps_S_ddot_z
         )
         # (rps-rel) acceleration of the connection point left to the joint accelerations
-        rps_rel_y = rps_S_ddot_tip_y - 2.0*rps_S_dot_tip_x*rps_qd_1
+        rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-qdd_1) acceleration of joint 1
-        rps_qdd_1 = inv_rps_root_1*rps_rel_y
+        rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y
         # (rps-acc_2) acceleration of the reference point of link 2, less gravity
-        rps_acc_2_x = (
-        axis_x_rps_axes1_in_base_x*rps_S_ddot_x + axis_x_rps_axes1_in_base_y*rps_S_ddot_y +
-            axis_x_rps_axes1_in_base_z*rps_S_ddot_z - rps_g_r1_x
+        rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
+        rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
+        rps_acc_2_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
+            axis_x_rps_axes1_z*rps_S_ddot_z - rps_g_in_axes1_x
         )
-        rps_acc_2_y = rps_S_ddot_tip_y - rps_g_r1_y
+        rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - rps_g_in_axes1_y
         # (rps-f_2) inertia force of link 2 less its weight
-        rps_f_2_x = rps_acc_2_x*rps_link2_mass - rps_W_1_t*rps_h_2_x - rps_h_2_y*rps_qdd_1
-        rps_f_2_y = rps_acc_2_y*rps_link2_mass + rps_h_2_x*rps_qdd_1 - rps_W_1_t*rps_h_2_y
+        rps_f_2_in_axes1_x = (
+        rps_acc_2_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
+            rps_h_2_in_spec1_y*rps_qdd_1
+        )
+        rps_f_2_in_axes1_y = (
+        rps_acc_2_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1 -
+            rps_W_1_t*rps_h_2_in_spec1_y
+        )
         # (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rps_mu_1_z = (
-        rps_J_group_1_zz*rps_qdd_1 + rps_acc_2_y*rps_h_2_x + rps_g_r1_x*rps_h_1_y -
-            rps_acc_2_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x
+        rps_mu_1_in_axes1_z = (
+        rps_J_group_1_in_axes1_zz*rps_qdd_1 + rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x +
+            rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y -
+            rps_g_in_axes1_y*rps_h_1_in_spec1_x
         )
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rps_G_t = rps_f_2_y + inv_rps_root_1*rps_mu_1_z
+        rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_root_1*rps_mu_1_in_axes1_z
         # (rps-c) leg force on the platform without actuation and without the mass at the connection point
-        rps_c_in_base_x = (
-        -axis_x_rps_axes1_in_base_x*rps_f_2_x - axis_y_rps_axes1_in_base_x*rps_G_t
-        )
-        rps_c_in_base_y = (
-        -axis_x_rps_axes1_in_base_y*rps_f_2_x - axis_y_rps_axes1_in_base_y*rps_G_t
-        )
-        rps_c_in_base_z = (
-        -axis_x_rps_axes1_in_base_z*rps_f_2_x - axis_y_rps_axes1_in_base_z*rps_G_t
-        )
+        rps_c_x = -axis_x_rps_axes1_x*rps_f_2_in_axes1_x - axis_y_rps_axes1_x*rps_G_in_axes1_y
+        rps_c_y = -axis_x_rps_axes1_y*rps_f_2_in_axes1_x - axis_y_rps_axes1_y*rps_G_in_axes1_y
+        rps_c_z = -axis_x_rps_axes1_z*rps_f_2_in_axes1_x - axis_y_rps_axes1_z*rps_G_in_axes1_y
         # (R_a) moment that actuators and external wrench must give
-        rps_R_a_t = rps_c_in_base_z*rps_q_in_base_y - rps_c_in_base_y*rps_q_in_base_z
-        rps_R_a_t_2 = rps_c_in_base_x*rps_q_in_base_z - rps_c_in_base_z*rps_q_in_base_x
-        rps_R_a_t_3 = rps_c_in_base_y*rps_q_in_base_x - rps_c_in_base_x*rps_q_in_base_y
+        rps_R_a_t = rps_c_y*rps_q_z - rps_c_z*rps_q_y
+        rps_R_a_t_2 = rps_c_z*rps_q_x - rps_c_x*rps_q_z
+        rps_R_a_t_3 = rps_c_x*rps_q_y - rps_c_y*rps_q_x
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
+        rps_H_a_2_x = axis_x_rps_axes1_z*rps_q_y - axis_x_rps_axes1_y*rps_q_z
+        rps_H_a_2_y = axis_x_rps_axes1_x*rps_q_z - axis_x_rps_axes1_z*rps_q_x
+        rps_H_a_2_z = axis_x_rps_axes1_y*rps_q_x - axis_x_rps_axes1_x*rps_q_y
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
+        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z
+        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x
+        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y
         ok = (
         ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
             > _TOLERANCE * 0.75))
         )
         sums = m.added(sums, leg, (
-        rps_c_in_base_x, rps_c_in_base_y, rps_c_in_base_z, rps_R_a_t, rps_R_a_t_2,
-            rps_R_a_t_3,
+        rps_c_x, rps_c_y, rps_c_z, rps_R_a_t, rps_R_a_t_2, rps_R_a_t_3,
         ))
-        out_H[_H_rps[0][leg]] = axis_x_rps_axes1_in_base_x
-        out_H[_H_rps[1][leg]] = axis_x_rps_axes1_in_base_y
-        out_H[_H_rps[2][leg]] = axis_x_rps_axes1_in_base_z
+        # (rps-w_2) reciprocal vector 2
+        out_H[_H_rps[0][leg]] = axis_x_rps_axes1_x
+        out_H[_H_rps[1][leg]] = axis_x_rps_axes1_y
+        out_H[_H_rps[2][leg]] = axis_x_rps_axes1_z
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rps[3][leg]] = rps_H_a_2_x
         out_H[_H_rps[4][leg]] = rps_H_a_2_y
         out_H[_H_rps[5][leg]] = rps_H_a_2_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_rps[0][leg]] = rps_base_frame_xz
         out_Hk[_Hk_rps[1][leg]] = rps_base_frame_yz
         out_Hk[_Hk_rps[2][leg]] = rps_base_frame_zz
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_rps[3][leg]] = rps_Hk_a_1_x
         out_Hk[_Hk_rps[4][leg]] = rps_Hk_a_1_y
         out_Hk[_Hk_rps[5][leg]] = rps_Hk_a_1_z
-    total_rps_x, total_rps_y, total_rps_z, total_rps_x_2, total_rps_y_2, total_rps_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_rps_x, R_a_rps_y, R_a_rps_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_rps_x
-    R_t_y = f_p_y - total_rps_y
-    R_t_z = f_p_z - total_rps_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_rps_x_2
-    R_a_y = mu_p_in_base_y - total_rps_y_2
-    R_a_z = mu_p_in_base_z - total_rps_z_2
+    R_a_x = R_a_rps_x + mu_p_x
+    R_a_y = R_a_rps_y + mu_p_y
+    R_a_z = R_a_rps_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -2730,24 +2743,25 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
         # (rps-root_1) amplitude, with the sign of the branch
         rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
-        # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
         # (rps-q_1) displacement of joint 1
+        inv_rps_root_1 = 1.0/rps_root_1
         rps_q_1 = atan2(inv_rps_root_1*rps_py_1, inv_rps_root_1*rps_px_1)
         ok = ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625))
+        # (rps-q_1) displacement of joint 1
         out_q[_q_rps[0][leg]] = rps_q_1
+        # (rps-q_2) displacement of joint 2
         out_q[_q_rps[1][leg]] = rps_root_1
     return ok, (out_q,)
 
@@ -2814,25 +2828,25 @@ def _run_joint_rates(m, X, V):
             rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -2844,15 +2858,15 @@ def _run_joint_rates(m, X, V):
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
         # (rps-S_dot) velocity of the connection point
-        rps_S_dot_x = t_dot_x + omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
-        rps_S_dot_y = t_dot_y + omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
-        rps_S_dot_z = t_dot_z + omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
-        rps_S_dot_tip_x = (
+        rps_S_dot_x = t_dot_x + omega_y*rps_q_z - omega_z*rps_q_y
+        rps_S_dot_y = t_dot_y + omega_z*rps_q_x - omega_x*rps_q_z
+        rps_S_dot_z = t_dot_z + omega_x*rps_q_y - omega_y*rps_q_x
+        rps_S_dot_in_axes1_x = (
         rps_S_dot_x*(rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1) +
             rps_S_dot_y*(rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1) +
             rps_S_dot_z*(rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1)
         )
-        # (rps-qd_2) rate of joint 2
+        # (rps-qd_1) rate of joint 1
         rps_qd_1 = (
         inv_rps_root_1*(rps_S_dot_x*(rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1) +
             rps_S_dot_y*(rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1) +
@@ -2862,8 +2876,10 @@ def _run_joint_rates(m, X, V):
         ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
             > _TOLERANCE * 0.75))
         )
+        # (rps-qd_1) rate of joint 1
         out_qd[_qd_rps[0][leg]] = rps_qd_1
-        out_qd[_qd_rps[1][leg]] = rps_S_dot_tip_x
+        # (rps-qd_2) rate of joint 2
+        out_qd[_qd_rps[1][leg]] = rps_S_dot_in_axes1_x
     return ok, (out_qd,)
 
 
@@ -2942,25 +2958,25 @@ def _run_joint_accelerations(m, X, V, A):
             rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -2971,54 +2987,55 @@ def _run_joint_accelerations(m, X, V, A):
         rps_c_1 = inv_rps_root_1*rps_px_1
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
-        # (rps-w_1) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
-        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
-        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
-        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-S_dot) velocity of the connection point
-        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
-        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
-        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y
+        rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
+        rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
         rps_S_dot_x = rps_S_dot_t + t_dot_x
         rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
         rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
-        rps_S_dot_tip_x = (
-        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
-            axis_x_rps_axes1_in_base_z*rps_S_dot_z
+        rps_S_dot_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_dot_x + axis_x_rps_axes1_y*rps_S_dot_y +
+            axis_x_rps_axes1_z*rps_S_dot_z
         )
-        # (rps-qd_2) rate of joint 2
+        # (rps-qd_1) rate of joint 1
+        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
+        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+            axis_y_rps_axes1_z*rps_S_dot_z)
         )
         # (rps-a_p) acceleration of the connection point without its centripetal part
-        rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y
-        rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z
-        rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x
+        rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y
+        rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z
+        rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x
         # (rps-S_ddot) acceleration of the connection point
         rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
         rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
         rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
         # (rps-rel) acceleration of the connection point left to the joint accelerations
-        rps_rel_x = (
-        axis_x_rps_axes1_in_base_x*rps_S_ddot_x + axis_x_rps_axes1_in_base_y*rps_S_ddot_y +
-            axis_x_rps_axes1_in_base_z*rps_S_ddot_z + rps_qd_1*rps_qd_1*rps_root_1
+        rps_rel_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
+            axis_x_rps_axes1_z*rps_S_ddot_z + rps_qd_1*rps_qd_1*rps_root_1
         )
-        rps_rel_y = (
-        axis_y_rps_axes1_in_base_x*rps_S_ddot_x + axis_y_rps_axes1_in_base_y*rps_S_ddot_y +
-            axis_y_rps_axes1_in_base_z*rps_S_ddot_z - 2.0*rps_S_dot_tip_x*rps_qd_1
+        rps_rel_in_axes1_y = (
+        axis_y_rps_axes1_x*rps_S_ddot_x + axis_y_rps_axes1_y*rps_S_ddot_y +
+            axis_y_rps_axes1_z*rps_S_ddot_z - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         )
         # (rps-qdd_1) acceleration of joint 1
-        rps_qdd_1 = inv_rps_root_1*rps_rel_y
+        rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y
         ok = (
         ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
             > _TOLERANCE * 0.75))
         )
+        # (rps-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rps[0][leg]] = rps_qdd_1
-        out_qdd[_qdd_rps[1][leg]] = rps_rel_x
+        # (rps-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_rps[1][leg]] = rps_rel_in_axes1_x
     return ok, (out_qdd,)
 
 
@@ -3081,11 +3098,11 @@ def _run_constraints(m, X):
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        # (rps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rps_xi_1_t = (
+        rps_S_in_axes1_z = (
         rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz + rps_S_z*rps_base_frame_zz
         )
-        out_constraints[_constraints_rps[0][leg]] = rps_xi_1_t
+        # (rps-phi_c1) distance by which the leg misses the platform, along a direction left out
+        out_constraints[_constraints_rps[0][leg]] = rps_S_in_axes1_z
     return ok, (out_constraints,)
 
 
@@ -3160,33 +3177,33 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        rps_J_group_1_zz, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz,
-            rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx,
-            rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x, rps_base_point_y,
-            rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x, rps_h_1_y,
-            rps_h_2_x, rps_h_2_y, rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
-            rps_platform_point_z,
+        rps_J_group_1_in_axes1_zz, rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx,
+            rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
+            rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
+            rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_branch_1,
+            rps_h_1_in_spec1_x, rps_h_1_in_spec1_y, rps_h_2_in_spec1_x, rps_h_2_in_spec1_y,
+            rps_link2_mass, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -3197,86 +3214,88 @@ def _run_legs(m, X, V, A):
         rps_c_1 = inv_rps_root_1*rps_px_1
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
-        # (rps-w_1) reciprocal vector 1
-        axis_y_rps_axes1_in_base_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
-        axis_y_rps_axes1_in_base_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
-        axis_y_rps_axes1_in_base_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
-        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-S_dot) velocity of the connection point
-        rps_S_dot_t = omega_y*rps_q_in_base_z - omega_z*rps_q_in_base_y
-        rps_S_dot_t_2 = omega_z*rps_q_in_base_x - omega_x*rps_q_in_base_z
-        rps_S_dot_t_3 = omega_x*rps_q_in_base_y - omega_y*rps_q_in_base_x
+        axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
+        rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y
+        rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z
+        rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x
         rps_S_dot_x = rps_S_dot_t + t_dot_x
         rps_S_dot_y = rps_S_dot_t_2 + t_dot_y
         rps_S_dot_z = rps_S_dot_t_3 + t_dot_z
-        rps_S_dot_tip_x = (
-        axis_x_rps_axes1_in_base_x*rps_S_dot_x + axis_x_rps_axes1_in_base_y*rps_S_dot_y +
-            axis_x_rps_axes1_in_base_z*rps_S_dot_z
+        rps_S_dot_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_dot_x + axis_x_rps_axes1_y*rps_S_dot_y +
+            axis_x_rps_axes1_z*rps_S_dot_z
         )
-        # (rps-qd_2) rate of joint 2
+        # (rps-qd_1) rate of joint 1
+        axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
+        axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
+        axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_in_base_x*rps_S_dot_x +
-            axis_y_rps_axes1_in_base_y*rps_S_dot_y + axis_y_rps_axes1_in_base_z*rps_S_dot_z)
+        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+            axis_y_rps_axes1_z*rps_S_dot_z)
         )
         # (rps-W_1) centripetal tensor of link 1
         rps_W_1_t = rps_qd_1*rps_qd_1
-        # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        rps_g_r1_x = rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1
-        rps_g_r1_y = rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1
         # (rps-a_p) acceleration of the connection point without its centripetal part
-        rps_a_p_x = t_ddot_x + alpha_y*rps_q_in_base_z - alpha_z*rps_q_in_base_y
-        rps_a_p_y = t_ddot_y + alpha_z*rps_q_in_base_x - alpha_x*rps_q_in_base_z
-        rps_a_p_z = t_ddot_z + alpha_x*rps_q_in_base_y - alpha_y*rps_q_in_base_x
+        rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y
+        rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z
+        rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x
         # (rps-S_ddot) acceleration of the connection point
         rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2
         rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3
         rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t
-        rps_S_ddot_tip_y = (
-        axis_y_rps_axes1_in_base_x*rps_S_ddot_x + axis_y_rps_axes1_in_base_y*rps_S_ddot_y +
-            axis_y_rps_axes1_in_base_z*rps_S_ddot_z
+        rps_S_ddot_in_axes1_y = (
+        axis_y_rps_axes1_x*rps_S_ddot_x + axis_y_rps_axes1_y*rps_S_ddot_y +
+            axis_y_rps_axes1_z*rps_S_ddot_z
         )
         # (rps-rel) acceleration of the connection point left to the joint accelerations
-        rps_rel_y = rps_S_ddot_tip_y - 2.0*rps_S_dot_tip_x*rps_qd_1
+        rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-qdd_1) acceleration of joint 1
-        rps_qdd_1 = inv_rps_root_1*rps_rel_y
+        rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y
         # (rps-acc_2) acceleration of the reference point of link 2, less gravity
-        rps_acc_2_x = (
-        axis_x_rps_axes1_in_base_x*rps_S_ddot_x + axis_x_rps_axes1_in_base_y*rps_S_ddot_y +
-            axis_x_rps_axes1_in_base_z*rps_S_ddot_z - rps_g_r1_x
+        rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
+        rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
+        rps_acc_2_in_axes1_x = (
+        axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
+            axis_x_rps_axes1_z*rps_S_ddot_z - rps_g_in_axes1_x
         )
-        rps_acc_2_y = rps_S_ddot_tip_y - rps_g_r1_y
+        rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - rps_g_in_axes1_y
         # (rps-f_2) inertia force of link 2 less its weight
-        rps_f_2_x = rps_acc_2_x*rps_link2_mass - rps_W_1_t*rps_h_2_x - rps_h_2_y*rps_qdd_1
-        rps_f_2_y = rps_acc_2_y*rps_link2_mass + rps_h_2_x*rps_qdd_1 - rps_W_1_t*rps_h_2_y
+        rps_f_2_in_axes1_x = (
+        rps_acc_2_in_axes1_x*rps_link2_mass - rps_W_1_t*rps_h_2_in_spec1_x -
+            rps_h_2_in_spec1_y*rps_qdd_1
+        )
+        rps_f_2_in_axes1_y = (
+        rps_acc_2_in_axes1_y*rps_link2_mass + rps_h_2_in_spec1_x*rps_qdd_1 -
+            rps_W_1_t*rps_h_2_in_spec1_y
+        )
         # (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points
-        rps_mu_1_z = (
-        rps_J_group_1_zz*rps_qdd_1 + rps_acc_2_y*rps_h_2_x + rps_g_r1_x*rps_h_1_y -
-            rps_acc_2_x*rps_h_2_y - rps_g_r1_y*rps_h_1_x
+        rps_mu_1_in_axes1_z = (
+        rps_J_group_1_in_axes1_zz*rps_qdd_1 + rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x +
+            rps_g_in_axes1_x*rps_h_1_in_spec1_y - rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y -
+            rps_g_in_axes1_y*rps_h_1_in_spec1_x
         )
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        rps_G_t = rps_f_2_y + inv_rps_root_1*rps_mu_1_z
+        rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_root_1*rps_mu_1_in_axes1_z
         # (rps-c) leg force on the platform without actuation and without the mass at the connection point
-        rps_c_in_base_x = (
-        -axis_x_rps_axes1_in_base_x*rps_f_2_x - axis_y_rps_axes1_in_base_x*rps_G_t
-        )
-        rps_c_in_base_y = (
-        -axis_x_rps_axes1_in_base_y*rps_f_2_x - axis_y_rps_axes1_in_base_y*rps_G_t
-        )
-        rps_c_in_base_z = (
-        -axis_x_rps_axes1_in_base_z*rps_f_2_x - axis_y_rps_axes1_in_base_z*rps_G_t
-        )
+        rps_c_x = -axis_x_rps_axes1_x*rps_f_2_in_axes1_x - axis_y_rps_axes1_x*rps_G_in_axes1_y
+        rps_c_y = -axis_x_rps_axes1_y*rps_f_2_in_axes1_x - axis_y_rps_axes1_y*rps_G_in_axes1_y
+        rps_c_z = -axis_x_rps_axes1_z*rps_f_2_in_axes1_x - axis_y_rps_axes1_z*rps_G_in_axes1_y
         ok = (
         ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1)
             > _TOLERANCE * 0.75))
         )
-        out_leg_force[_leg_force_rps[0][leg]] = rps_c_in_base_x
-        out_leg_force[_leg_force_rps[1][leg]] = rps_c_in_base_y
-        out_leg_force[_leg_force_rps[2][leg]] = rps_c_in_base_z
-        out_drive[_drive_rps[0][leg]] = axis_x_rps_axes1_in_base_x
-        out_drive[_drive_rps[1][leg]] = axis_x_rps_axes1_in_base_y
-        out_drive[_drive_rps[2][leg]] = axis_x_rps_axes1_in_base_z
+        # (rps-c) leg force on the platform without actuation and without the mass at the connection point
+        out_leg_force[_leg_force_rps[0][leg]] = rps_c_x
+        out_leg_force[_leg_force_rps[1][leg]] = rps_c_y
+        out_leg_force[_leg_force_rps[2][leg]] = rps_c_z
+        # (rps-w_2) reciprocal vector 2
+        out_drive[_drive_rps[0][leg]] = axis_x_rps_axes1_x
+        out_drive[_drive_rps[1][leg]] = axis_x_rps_axes1_y
+        out_drive[_drive_rps[2][leg]] = axis_x_rps_axes1_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_constraint_direction[_constraint_direction_rps[0][leg]] = rps_base_frame_xz
         out_constraint_direction[_constraint_direction_rps[1][leg]] = rps_base_frame_yz
         out_constraint_direction[_constraint_direction_rps[2][leg]] = rps_base_frame_zz
@@ -3287,7 +3306,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3327,18 +3349,20 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + platform_mass*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + platform_mass*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + platform_mass*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        platform_mass*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        rps_b_r0_x, rps_b_r0_y, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+        rps_acc_2_t, rps_acc_2_t_2, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
             rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
-            rps_base_point_y, rps_base_point_z, rps_branch_1, rps_g_r0_x, rps_g_r0_y, rps_h_1_x,
-            rps_h_1_y, rps_h_2_x, rps_h_2_y, rps_link1_mass, rps_link2_mass, rps_platform_point_x,
-            rps_platform_point_y, rps_platform_point_z, rps_potential_t,
+            rps_base_point_y, rps_base_point_z, rps_branch_1, rps_h_1_in_spec1_x,
+            rps_h_1_in_spec1_y, rps_h_2_in_spec1_x, rps_h_2_in_spec1_y, rps_link1_mass,
+            rps_link2_mass, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
+            rps_potential_t, rps_potential_t_2, rps_potential_t_3,
         ) = k
         # (rps-S) from the base point to the connection point
         rps_S_x = (
@@ -3353,13 +3377,13 @@ def _run_potential(m, X):
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -3371,21 +3395,23 @@ def _run_potential(m, X):
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
         # (potential) potential energy
-        rps_b_r1_x = rps_b_r0_x*rps_c_1 + rps_b_r0_y*rps_s_1
-        rps_b_r1_y = rps_b_r0_y*rps_c_1 - rps_b_r0_x*rps_s_1
-        rps_potential_t_2 = (
-        rps_potential_t + (rps_c_1*rps_g_r0_x + rps_g_r0_y*rps_s_1)*(rps_h_1_x + rps_h_2_x +
-            rps_b_r1_x*rps_link1_mass + rps_link2_mass*(rps_b_r1_x + rps_root_1)) +
-            (rps_c_1*rps_g_r0_y - rps_g_r0_x*rps_s_1)*(rps_h_1_y + rps_h_2_y +
-            rps_b_r1_y*rps_link1_mass + rps_b_r1_y*rps_link2_mass)
+        rps_b_in_spec1_x = rps_c_1*rps_potential_t + rps_potential_t_2*rps_s_1
+        rps_b_in_spec1_y = rps_c_1*rps_potential_t_2 - rps_potential_t*rps_s_1
+        rps_potential_t_4 = (
+        rps_potential_t_3 + (rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1)*(rps_h_1_in_spec1_x +
+            rps_h_2_in_spec1_x + rps_b_in_spec1_x*rps_link1_mass +
+            rps_link2_mass*(rps_b_in_spec1_x + rps_root_1)) + (rps_acc_2_t_2*rps_c_1 -
+            rps_acc_2_t*rps_s_1)*(rps_h_1_in_spec1_y + rps_h_2_in_spec1_y +
+            rps_b_in_spec1_y*rps_link1_mass + rps_b_in_spec1_y*rps_link2_mass)
         )
         ok = ok & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625))
         sums = m.added(sums, leg, (
-        rps_potential_t_2,
+        rps_potential_t_4,
         ))
-    total_rps, = sums
+    potential_t_2, = sums
     # (potential) potential energy
-    potential = -potential_t - total_rps
+    potential = -potential_t - potential_t_2
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -3395,7 +3421,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -3439,6 +3465,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -3449,25 +3476,25 @@ def _run_condition(m, X):
             rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
         ) = k
         # (rps-S) from the base point to the connection point
-        rps_q_in_base_x = (
+        rps_q_x = (
         R_xx*rps_platform_point_x + R_xy*rps_platform_point_y + R_xz*rps_platform_point_z
         )
-        rps_q_in_base_y = (
+        rps_q_y = (
         R_yx*rps_platform_point_x + R_yy*rps_platform_point_y + R_yz*rps_platform_point_z
         )
-        rps_q_in_base_z = (
+        rps_q_z = (
         R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z
         )
-        rps_S_x = rps_q_in_base_x + t_x - rps_base_point_x
-        rps_S_y = rps_q_in_base_y + t_y - rps_base_point_y
-        rps_S_z = rps_q_in_base_z + t_z - rps_base_point_z
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
-        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
-        )
+        rps_S_x = rps_q_x + t_x - rps_base_point_x
+        rps_S_y = rps_q_y + t_y - rps_base_point_y
+        rps_S_z = rps_q_z + t_z - rps_base_point_z
         # (rps-px_1) component along the reference direction
         rps_px_1 = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
+        )
+        # (rps-py_1) component across the reference direction
+        rps_py_1 = (
+        rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
         # (rps-rho2_1) squared amplitude
         rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
@@ -3478,38 +3505,30 @@ def _run_condition(m, X):
         rps_c_1 = inv_rps_root_1*rps_px_1
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
         rps_s_1 = inv_rps_root_1*rps_py_1
-        # (rps-w_1) reciprocal vector 1
-        axis_x_rps_axes1_in_base_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
-        axis_x_rps_axes1_in_base_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
-        axis_x_rps_axes1_in_base_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
-        # (rps-H_a_2) moment of the column's unit force about the platform origin
-        rps_H_a_2_x = (
-        axis_x_rps_axes1_in_base_z*rps_q_in_base_y - axis_x_rps_axes1_in_base_y*rps_q_in_base_z
-        )
-        rps_H_a_2_y = (
-        axis_x_rps_axes1_in_base_x*rps_q_in_base_z - axis_x_rps_axes1_in_base_z*rps_q_in_base_x
-        )
-        rps_H_a_2_z = (
-        axis_x_rps_axes1_in_base_y*rps_q_in_base_x - axis_x_rps_axes1_in_base_x*rps_q_in_base_y
-        )
-        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
-        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_in_base_y - rps_base_frame_yz*rps_q_in_base_z
-        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_in_base_z - rps_base_frame_zz*rps_q_in_base_x
-        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_in_base_x - rps_base_frame_xz*rps_q_in_base_y
-        # (spread) rms distance of the platform points from their centroid
-        rps_spread_t = b_c_x - rps_platform_point_x
-        rps_spread_t_2 = b_c_y - rps_platform_point_y
-        rps_spread_t_3 = b_c_z - rps_platform_point_z
-        rps_spread_t_4 = (
-        rps_spread_t*rps_spread_t + rps_spread_t_2*rps_spread_t_2 + rps_spread_t_3*rps_spread_t_3
-        )
-        # (rps-rho2_1) squared amplitude
-        rps_pivot_size = abs(rps_rho2_1)
-        # (rps-w_1) reciprocal vector 1
-        rps_pivot_size_2 = abs(rps_root_1)
+        # (rps-w_2) reciprocal vector 2
+        rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
+        rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
+        rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        rps_pivot_size = abs(rps_rho2_1)
+        rps_pivot_size_2 = abs(rps_root_1)
         rps_least_pivots = (
         least(1.3333333333333333*sqrt(rps_pivot_size), 1.3333333333333333*rps_pivot_size_2)
+        )
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
+        rps_H_a_2_x = rps_q_y*rps_w_2_z - rps_q_z*rps_w_2_y
+        rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z
+        rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
+        rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z
+        rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x
+        rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y
+        # (spread) rms distance of the platform points from their centroid
+        rps_spread_t = b_c_in_platform_x - rps_platform_point_x
+        rps_spread_t_2 = b_c_in_platform_y - rps_platform_point_y
+        rps_spread_t_3 = b_c_in_platform_z - rps_platform_point_z
+        rps_spread_t_4 = (
+        rps_spread_t*rps_spread_t + rps_spread_t_2*rps_spread_t_2 + rps_spread_t_3*rps_spread_t_3
         )
         clear = (
         clear & m.every(leg, (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) &
@@ -3518,22 +3537,28 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         rps_spread_t_4,
         ))
-        out_H[_H_rps[0][leg]] = axis_x_rps_axes1_in_base_x
-        out_H[_H_rps[1][leg]] = axis_x_rps_axes1_in_base_y
-        out_H[_H_rps[2][leg]] = axis_x_rps_axes1_in_base_z
+        # (rps-w_2) reciprocal vector 2
+        out_H[_H_rps[0][leg]] = rps_w_2_x
+        out_H[_H_rps[1][leg]] = rps_w_2_y
+        out_H[_H_rps[2][leg]] = rps_w_2_z
+        # (rps-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_rps[3][leg]] = rps_H_a_2_x
         out_H[_H_rps[4][leg]] = rps_H_a_2_y
         out_H[_H_rps[5][leg]] = rps_H_a_2_z
+        # (legs_size) rms size of the legs, taken where the platform points coincide
         out_Hk[_Hk_rps[0][leg]] = rps_base_frame_xz
         out_Hk[_Hk_rps[1][leg]] = rps_base_frame_yz
         out_Hk[_Hk_rps[2][leg]] = rps_base_frame_zz
+        # (rps-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_rps[3][leg]] = rps_Hk_a_1_x
         out_Hk[_Hk_rps[4][leg]] = rps_Hk_a_1_y
         out_Hk[_Hk_rps[5][leg]] = rps_Hk_a_1_z
+        # (rps-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_rps[0][leg]] = rps_least_pivots
-    total_rps, = sums
+    spread_rps, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_rps)
+    spread = sqrt(spread_rps)*spread_t
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 

@@ -470,13 +470,13 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_ups = 0;
-    real total_ups_x = 0;
-    real total_ups_y = 0;
-    real total_ups_z = 0;
-    real total_ups_x_2 = 0;
-    real total_ups_y_2 = 0;
-    real total_ups_z_2 = 0;
+    real m_star_ups = 0;
+    real h_star_ups_in_platform_x = 0;
+    real h_star_ups_in_platform_y = 0;
+    real h_star_ups_in_platform_z = 0;
+    real b_c_ups_in_platform_x = 0;
+    real b_c_ups_in_platform_y = 0;
+    real b_c_ups_in_platform_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -538,86 +538,84 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         const real ups_branch_1 = signs_ups_branch_1[own];
         static const signed char signs_ups_branch_2[] = {1, 1, 1};
         const real ups_branch_2 = signs_ups_branch_2[own];
+        /* (ups-h_2) first moment of link 2 about the origin of link 2 */
+        const real ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
+        const real ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
+        const real ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
         /* (ups-h_3) first moment of link 3 about the connection point */
-        const real ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass;
-        const real ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass;
-        /* (ups-J_2) inertia tensor of link 2 about the origin of link 2 */
-        const real ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
-        const real ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
-        const real ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
-        const real ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3;
-        /* (ups-J_3) inertia tensor of link 3 about the connection point */
-        const real ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
-        const real ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
-        const real ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
-        const real ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3;
+        const real ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass;
+        const real ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass;
+        const real ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
+            gravity_z*ups_base_frame_zx;
+        const real ups_acc_3_t_2 = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
+            gravity_z*ups_base_frame_zy;
+        const real ups_acc_3_t_3 = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
+            gravity_z*ups_base_frame_zz;
         /* (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point */
-        const real ups_J_group_2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
-            ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t - ups_J_3_t_4);
-        const real ups_J_group_2_xy =
+        const real ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
+        const real ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
+        const real ups_J_group_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z;
+        const real ups_J_group_2_t_4 = ups_J_group_2_t + ups_J_group_2_t_2 + ups_J_group_2_t_3;
+        const real ups_J_group_2_t_5 = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x;
+        const real ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y;
+        const real ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z;
+        const real ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7;
+        const real ups_J_group_2_in_axes2_xx = ups_link2_inertia_xx + ups_link3_inertia_xx -
+            ups_link2_mass*(ups_J_group_2_t - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8);
+        const real ups_J_group_2_in_axes2_xy =
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_xz - ups_link3_inertia_xz;
-        const real ups_J_group_2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
+        const real ups_J_group_2_in_axes2_xz = ups_link2_inertia_xy + ups_link3_inertia_xy -
             ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
             ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass;
-        const real ups_J_group_2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
-            ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_3 -
-            ups_J_3_t_4);
-        const real ups_J_group_2_yz =
+        const real ups_J_group_2_in_axes2_yy = ups_link2_inertia_zz + ups_link3_inertia_zz -
+            ups_link2_mass*(ups_J_group_2_t_3 - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8);
+        const real ups_J_group_2_in_axes2_yz =
             ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
             ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
             ups_link2_inertia_yz - ups_link3_inertia_yz;
-        const real ups_J_group_2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
-            ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) - ups_link3_mass*(ups_J_3_t_2 -
-            ups_J_3_t_4);
-        /* (ups-h_2) first moment of link 2 about the origin of link 2 */
-        const real ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass;
-        const real ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass;
-        const real ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx +
-            gravity_z*ups_base_frame_zx;
-        const real ups_g_r0_y = gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy +
-            gravity_z*ups_base_frame_zy;
-        const real ups_g_r0_z = gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz +
-            gravity_z*ups_base_frame_zz;
+        const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
+            ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
+            ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
         /* (ups-trace_J_2) half the trace of that inertia tensor */
-        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_xx + R(0.5)*ups_J_group_2_yy +
-            R(0.5)*ups_J_group_2_zz;
+        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_in_axes2_xx +
+            R(0.5)*ups_J_group_2_in_axes2_yy + R(0.5)*ups_J_group_2_in_axes2_zz;
         /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx;
-        const real ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy;
-        const real ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz;
+        const real ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx;
+        const real ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy;
+        const real ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz;
         /* (ups-h_group_2) first moments of the links that turn with link 2 */
-        const real ups_h_group_2_x = ups_h_2_x + ups_h_3_x;
-        const real ups_h_group_2_y = -ups_h_2_z - ups_h_3_z;
-        const real ups_h_group_2_z = ups_h_2_y + ups_h_3_y;
+        const real ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x;
+        const real ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z;
+        const real ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y;
         /* (h_star) first moment about the platform origin */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
         const real ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z;
         /* (potential) potential energy */
-        const real ups_b_r0_x = ups_base_frame_xx*ups_base_point_x +
+        const real ups_potential_t = ups_base_frame_xx*ups_base_point_x +
             ups_base_frame_yx*ups_base_point_y + ups_base_frame_zx*ups_base_point_z;
-        const real ups_b_r0_y = ups_base_frame_xy*ups_base_point_x +
+        const real ups_potential_t_2 = ups_base_frame_xy*ups_base_point_x +
             ups_base_frame_yy*ups_base_point_y + ups_base_frame_zy*ups_base_point_z;
-        const real ups_b_r0_z = ups_base_frame_xz*ups_base_point_x +
+        const real ups_potential_t_3 = ups_base_frame_xz*ups_base_point_x +
             ups_base_frame_yz*ups_base_point_y + ups_base_frame_zz*ups_base_point_z;
-        model->ups_J_group_2_xx[leg] = ups_J_group_2_xx;
-        model->ups_J_group_2_xy[leg] = ups_J_group_2_xy;
-        model->ups_J_group_2_xz[leg] = ups_J_group_2_xz;
-        model->ups_J_group_2_yy[leg] = ups_J_group_2_yy;
-        model->ups_J_group_2_yz[leg] = ups_J_group_2_yz;
-        model->ups_J_group_2_zz[leg] = ups_J_group_2_zz;
-        model->ups_Sigma_2_xx[leg] = ups_Sigma_2_xx;
-        model->ups_Sigma_2_yy[leg] = ups_Sigma_2_yy;
-        model->ups_Sigma_2_zz[leg] = ups_Sigma_2_zz;
-        model->ups_b_r0_x[leg] = ups_b_r0_x;
-        model->ups_b_r0_y[leg] = ups_b_r0_y;
-        model->ups_b_r0_z[leg] = ups_b_r0_z;
+        model->ups_J_group_2_in_axes2_xx[leg] = ups_J_group_2_in_axes2_xx;
+        model->ups_J_group_2_in_axes2_xy[leg] = ups_J_group_2_in_axes2_xy;
+        model->ups_J_group_2_in_axes2_xz[leg] = ups_J_group_2_in_axes2_xz;
+        model->ups_J_group_2_in_axes2_yy[leg] = ups_J_group_2_in_axes2_yy;
+        model->ups_J_group_2_in_axes2_yz[leg] = ups_J_group_2_in_axes2_yz;
+        model->ups_J_group_2_in_axes2_zz[leg] = ups_J_group_2_in_axes2_zz;
+        model->ups_Sigma_2_in_axes2_xx[leg] = ups_Sigma_2_in_axes2_xx;
+        model->ups_Sigma_2_in_axes2_yy[leg] = ups_Sigma_2_in_axes2_yy;
+        model->ups_Sigma_2_in_axes2_zz[leg] = ups_Sigma_2_in_axes2_zz;
+        model->ups_acc_3_t[leg] = ups_acc_3_t;
+        model->ups_acc_3_t_2[leg] = ups_acc_3_t_2;
+        model->ups_acc_3_t_3[leg] = ups_acc_3_t_3;
         model->ups_base_frame_xx[leg] = ups_base_frame_xx;
         model->ups_base_frame_xy[leg] = ups_base_frame_xy;
         model->ups_base_frame_xz[leg] = ups_base_frame_xz;
@@ -632,51 +630,51 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         model->ups_base_point_z[leg] = ups_base_point_z;
         model->ups_branch_1[leg] = ups_branch_1;
         model->ups_branch_2[leg] = ups_branch_2;
-        model->ups_g_r0_x[leg] = ups_g_r0_x;
-        model->ups_g_r0_y[leg] = ups_g_r0_y;
-        model->ups_g_r0_z[leg] = ups_g_r0_z;
-        model->ups_h_2_x[leg] = ups_h_2_x;
-        model->ups_h_2_y[leg] = ups_h_2_y;
-        model->ups_h_2_z[leg] = ups_h_2_z;
-        model->ups_h_3_x[leg] = ups_h_3_x;
-        model->ups_h_3_y[leg] = ups_h_3_y;
-        model->ups_h_3_z[leg] = ups_h_3_z;
-        model->ups_h_group_2_x[leg] = ups_h_group_2_x;
-        model->ups_h_group_2_y[leg] = ups_h_group_2_y;
-        model->ups_h_group_2_z[leg] = ups_h_group_2_z;
+        model->ups_h_2_in_spec2_x[leg] = ups_h_2_in_spec2_x;
+        model->ups_h_2_in_spec2_y[leg] = ups_h_2_in_spec2_y;
+        model->ups_h_2_in_spec2_z[leg] = ups_h_2_in_spec2_z;
+        model->ups_h_3_in_spec2_x[leg] = ups_h_3_in_spec2_x;
+        model->ups_h_3_in_spec2_y[leg] = ups_h_3_in_spec2_y;
+        model->ups_h_3_in_spec2_z[leg] = ups_h_3_in_spec2_z;
+        model->ups_h_group_2_in_axes2_x[leg] = ups_h_group_2_in_axes2_x;
+        model->ups_h_group_2_in_axes2_y[leg] = ups_h_group_2_in_axes2_y;
+        model->ups_h_group_2_in_axes2_z[leg] = ups_h_group_2_in_axes2_z;
         model->ups_link2_mass[leg] = ups_link2_mass;
         model->ups_link3_mass[leg] = ups_link3_mass;
         model->ups_platform_point_x[leg] = ups_platform_point_x;
         model->ups_platform_point_y[leg] = ups_platform_point_y;
         model->ups_platform_point_z[leg] = ups_platform_point_z;
-        total_ups += leg < 3 ? ups_link3_mass : 0;
-        total_ups_x += leg < 3 ? ups_h_star_t : 0;
-        total_ups_y += leg < 3 ? ups_h_star_t_2 : 0;
-        total_ups_z += leg < 3 ? ups_h_star_t_3 : 0;
-        total_ups_x_2 += leg < 3 ? ups_platform_point_x : 0;
-        total_ups_y_2 += leg < 3 ? ups_platform_point_y : 0;
-        total_ups_z_2 += leg < 3 ? ups_platform_point_z : 0;
+        model->ups_potential_t[leg] = ups_potential_t;
+        model->ups_potential_t_2[leg] = ups_potential_t_2;
+        model->ups_potential_t_3[leg] = ups_potential_t_3;
+        m_star_ups += leg < 3 ? ups_link3_mass : 0;
+        h_star_ups_in_platform_x += leg < 3 ? ups_h_star_t : 0;
+        h_star_ups_in_platform_y += leg < 3 ? ups_h_star_t_2 : 0;
+        h_star_ups_in_platform_z += leg < 3 ? ups_h_star_t_3 : 0;
+        b_c_ups_in_platform_x += leg < 3 ? ups_platform_point_x : 0;
+        b_c_ups_in_platform_y += leg < 3 ? ups_platform_point_y : 0;
+        b_c_ups_in_platform_z += leg < 3 ? ups_platform_point_z : 0;
     }
     /* (m_star) mass of the platform with the gathered masses */
-    const real m_star = platform_mass + total_ups;
-    /* (Z_p) centripetal force and weight of the platform */
-    const real Z_p_x = gravity_x*m_star;
-    const real Z_p_y = gravity_y*m_star;
-    const real Z_p_z = gravity_z*m_star;
+    const real m_star = m_star_ups + platform_mass;
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = h_star_t + total_ups_x;
-    const real h_star_y = h_star_t_2 + total_ups_y;
-    const real h_star_z = h_star_t_3 + total_ups_z;
+    const real h_star_x = h_star_t + h_star_ups_in_platform_x;
+    const real h_star_y = h_star_t_2 + h_star_ups_in_platform_y;
+    const real h_star_z = h_star_t_3 + h_star_ups_in_platform_z;
+    /* (Z_p) centripetal force and weight of the platform */
+    const real Z_p_x = -gravity_x*m_star;
+    const real Z_p_y = -gravity_y*m_star;
+    const real Z_p_z = -gravity_z*m_star;
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_ups_x_2;
-    const real b_c_y = R(0.3333333333333333)*total_ups_y_2;
-    const real b_c_z = R(0.3333333333333333)*total_ups_z_2;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_ups_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_ups_in_platform_y;
+    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_ups_in_platform_z;
     model->Z_p_x = Z_p_x;
     model->Z_p_y = Z_p_y;
     model->Z_p_z = Z_p_z;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
@@ -1121,197 +1119,204 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
-        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
-        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
-        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
-        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
-            inv_ups_root_2*ups_J_group_2_zz);
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
-            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
-        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
-        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
-            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy));
-        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ups_Q_t = R(0.5)*ups_d_c_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
-        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
-            - ups_axis_x_x*ups_d_phi_3_t;
-        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
-            - ups_axis_x_y*ups_d_phi_3_t;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
-            - ups_axis_x_z*ups_d_phi_3_t;
-        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
-            ups_axis_x_x*ups_d_phi_3_t_2;
-        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
-            ups_axis_x_y*ups_d_phi_3_t_2;
-        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
-            ups_axis_x_z*ups_d_phi_3_t_2;
-        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
-        const real ups_Q_t_10 = 2*ups_Q_t_9;
-        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
-        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
-        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
-        const real ups_Q_t_14 = 2*ups_Q_t_13;
-        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
-        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
-            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
-        const real ups_Q_t_17 = 2*ups_Q_t_16;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
-            t_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
+            + axis_x_ups_axes2_z*t_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
+        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
+        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
+            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
             axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
-            axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
         /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real ups_qdd_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2;
-        const real ups_qdd_1_o = inv_ups_root_1*ups_bias_z;
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
+        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z;
+        /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
         /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        const real ups_alpha_1_o_t = ups_qdd_1_o_t*ups_s_2;
+        const real ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o_t;
         /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_x = -ups_alpha_1_o_t - ups_zeta_2_x;
-        const real ups_alpha_2_o_y = ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t;
+        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_xy = ups_qdd_2_o_t - 2*ups_W_2_xy;
-        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
-        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
+        const real ups_B_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2;
+        const real ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2*ups_W_2_in_axes2_xy;
+        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
+        /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
         /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real ups_phi_3_o_x = ups_alpha_1_o_t_2*ups_h_3_y - ups_B_2_o_xy*ups_h_3_z -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_group_2_y = m->ups_h_group_2_y[i];
-        const real ups_h_group_2_z = m->ups_h_group_2_z[i];
-        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_yz*(ups_W_2_t_2 -
-            ups_W_2_t_3) + ups_g_r3_y*ups_h_group_2_z - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_J_group_2_xz*ups_qdd_2_o_t - ups_Sigma_2_zz*ups_alpha_1_o_t -
-            ups_g_r1_x*ups_h_group_2_y;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_group_2_x = m->ups_h_group_2_x[i];
-        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_Sigma_2_zz*ups_alpha_1_o_t_2
-            + ups_g_r1_x*ups_h_group_2_x - ups_B_2_o_xy*ups_J_group_2_yz -
-            ups_B_2_o_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) -
-            ups_g_r3_x*ups_h_group_2_z;
-        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_yz*ups_alpha_1_o_t_2 + ups_g_r3_x*ups_h_group_2_y -
-            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_xz*ups_alpha_1_o_t -
-            ups_Sigma_2_xx*ups_qdd_2_o_t - ups_g_r3_y*ups_h_group_2_x;
+        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t;
+        const real ups_mu_2_o_t_2 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_c_2*ups_mu_2_o_t_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_mu_2_o_t_2*ups_s_2;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_group_2_in_axes2_y = m->ups_h_group_2_in_axes2_y[i];
+        const real ups_h_group_2_in_axes2_z = m->ups_h_group_2_in_axes2_z[i];
+        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
+            ups_g_in_axes2_z*ups_h_group_2_in_axes2_y;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_group_2_in_axes2_x = m->ups_h_group_2_in_axes2_x[i];
+        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_g_in_axes2_x*ups_h_group_2_in_axes2_z;
+        const real ups_mu_2_o_in_axes2_z = ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
+            ups_phi_3_o_t) + ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
+            ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x;
+        /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
+        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
+        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
+            ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
+            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
+            inv_ups_root_2*ups_J_group_2_in_axes2_xy));
         /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ups_c_o_y = ups_h_3_x*ups_qdd_2_o_t - inv_ups_root_2*ups_mu_2_o_z -
-            ups_alpha_1_o_t*ups_h_3_y - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        const real ups_c_o_in_axes2_y = ups_B_2_o_t*ups_h_3_in_spec2_x -
+            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_alpha_1_o_t*ups_h_3_in_spec2_y -
+            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+        /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+        const real ups_Q_t_3 = axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+            axis_y_ups_axes2_x*ups_Q_t - axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+            axis_y_ups_axes2_y*ups_Q_t - axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
+            - axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+        const real ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_x*ups_Q_t_2;
+        const real ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_y*ups_Q_t_2;
+        const real ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+            axis_z_ups_axes2_z*ups_Q_t_2;
+        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_xx = -2*ups_Q_t_9;
+        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
+            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
+            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_yy = -2*ups_Q_t_10;
+        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
+            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_zz = -2*ups_Q_t_11;
         /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z;
-        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z;
-        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
-        terms[7*count + k] = add ? terms[7*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
-        terms[8*count + k] = add ? terms[8*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
-        o[4*count + k] = ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z);
+        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_xx : ups_Q_xx;  /* M_tt_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_xy : ups_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_xz : ups_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_yy : ups_Q_yy;  /* M_tt_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_yz : ups_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_zz : ups_Q_zz;  /* M_tt_ups_zz */
+        /* (Z_t) translational part of Z */
+        terms[6*count + k] = add ? terms[6*count + k] + ups_U_x : ups_U_x;  /* Z_t_ups_x */
+        terms[7*count + k] = add ? terms[7*count + k] + ups_U_y : ups_U_y;  /* Z_t_ups_y */
+        terms[8*count + k] = add ? terms[8*count + k] + ups_U_z : ups_U_z;  /* Z_t_ups_z */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = axis_x_ups_axes2_x;
+        o[1*count + k] = axis_x_ups_axes2_y;
+        o[2*count + k] = axis_x_ups_axes2_z;
+        o[4*count + k] = axis_x_ups_axes2_x + (axis_x_ups_axes2_y + axis_x_ups_axes2_z);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -1336,40 +1341,42 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_ups_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_ups_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_ups_xx;
-        const real total_ups_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_ups_yy;
-        const real total_ups_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_ups_zz;
+        const real M_tt_xx = M_tt_ups_xx + m_star;
+        const real M_tt_ups_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_ups_yy + m_star;
+        const real M_tt_ups_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_ups_zz + m_star;
         /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
-        const real total_ups_x = sums[6*w + k];
-        const real Z_t_x = total_ups_x - Z_p_x;
+        const real Z_t_ups_x = sums[6*w + k];
+        const real Z_t_x = Z_p_x + Z_t_ups_x;
         const real Z_p_y = m->Z_p_y;
-        const real total_ups_y = sums[7*w + k];
-        const real Z_t_y = total_ups_y - Z_p_y;
+        const real Z_t_ups_y = sums[7*w + k];
+        const real Z_t_y = Z_p_y + Z_t_ups_y;
         const real Z_p_z = m->Z_p_z;
-        const real total_ups_z = sums[8*w + k];
-        const real Z_t_z = total_ups_z - Z_p_z;
+        const real Z_t_ups_z = sums[8*w + k];
+        const real Z_t_z = Z_p_z + Z_t_ups_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_ups_xy = sums[1*w + k];
-        M[1*w + k] = -total_ups_xy;
-        M[3*w + k] = -total_ups_xy;
-        const real total_ups_xz = sums[2*w + k];
-        M[2*w + k] = -total_ups_xz;
-        M[6*w + k] = -total_ups_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[6*w + k] = M_tt_xz;
         M[4*w + k] = M_tt_yy;
-        const real total_ups_yz = sums[4*w + k];
-        M[5*w + k] = -total_ups_yz;
-        M[7*w + k] = -total_ups_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[5*w + k] = M_tt_yz;
+        M[7*w + k] = M_tt_yz;
         M[8*w + k] = M_tt_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
-        t->total[k] += ((M_tt_xx + total_ups_xy) + (total_ups_xz + M_tt_yy)) + ((total_ups_yz +
-            M_tt_zz) + (Z_t_x + (Z_t_y + Z_t_z)));
+        t->total[k] += ((M_tt_xx + M_tt_xy) + (M_tt_xz + M_tt_yy)) + ((M_tt_yz + M_tt_zz) + (Z_t_x
+            + (Z_t_y + Z_t_z)));
     }
 }
 
@@ -1454,106 +1461,98 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = inv_ups_root_2*ups_S_x;
+        const real ups_w_3_y = inv_ups_root_2*ups_S_y;
+        const real ups_w_3_z = inv_ups_root_2*ups_S_z;
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_t = inv_ups_root_1*ups_s_2;
+        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z;
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y;
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x;
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real ups_J_group_2_zz = m->ups_J_group_2_zz[i];
-        const real ups_d_c_yy = -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x +
-            inv_ups_root_2*ups_J_group_2_zz);
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_d_c_yz = ups_d_alpha_1_t*ups_h_3_y -
-            inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t - inv_ups_root_2*ups_J_group_2_yz);
-        const real ups_J_group_2_xx = m->ups_J_group_2_xx[i];
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_yy = m->ups_J_group_2_yy[i];
-        const real ups_d_c_zz = ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
-            inv_ups_root_2*ups_J_group_2_yy));
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
+        const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+        const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
+        const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
+            ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ups_Q_t = R(0.5)*ups_d_c_yy;
-        const real ups_Q_t_2 = R(0.5)*ups_d_c_zz;
-        const real ups_Q_t_3 = axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz
-            - ups_axis_x_x*ups_d_phi_3_t;
-        const real ups_Q_t_4 = axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz
-            - ups_axis_x_y*ups_d_phi_3_t;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz
-            - ups_axis_x_z*ups_d_phi_3_t;
-        const real ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 +
-            ups_axis_x_x*ups_d_phi_3_t_2;
-        const real ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 +
-            ups_axis_x_y*ups_d_phi_3_t_2;
-        const real ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 +
-            ups_axis_x_z*ups_d_phi_3_t_2;
-        const real ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_6;
-        const real ups_Q_t_10 = 2*ups_Q_t_9;
-        const real ups_Q_t_11 = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6;
-        const real ups_Q_t_12 = axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6;
-        const real ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_7;
-        const real ups_Q_t_14 = 2*ups_Q_t_13;
-        const real ups_Q_t_15 = axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7;
-        const real ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 +
-            axis_z_ups_axes2_in_base_z*ups_Q_t_8;
-        const real ups_Q_t_17 = 2*ups_Q_t_16;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_t_10 : ups_Q_t_10;  /* total_ups_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_t_11 : ups_Q_t_11;  /* total_ups_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_t_12 : ups_Q_t_12;  /* total_ups_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_t_14 : ups_Q_t_14;  /* total_ups_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_t_15 : ups_Q_t_15;  /* total_ups_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_t_17 : ups_Q_t_17;  /* total_ups_zz */
+        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
+        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
+        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
+        const real axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z -
+            axis_z_ups_axes2_z*ups_w_3_y;
+        const real axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x -
+            axis_z_ups_axes2_x*ups_w_3_z;
+        const real axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y -
+            axis_z_ups_axes2_y*ups_w_3_x;
+        const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
+        const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
+        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
+            - ups_d_phi_3_in_axes2_xy*ups_w_3_z;
+        const real ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x;
+        const real ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y;
+        const real ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z;
+        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_xx = -2*ups_Q_t_9;
+        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
+            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
+            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_yy = -2*ups_Q_t_10;
+        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
+            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_zz = -2*ups_Q_t_11;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_Q_xx : ups_Q_xx;  /* M_tt_ups_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_Q_xy : ups_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_Q_xz : ups_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + ups_Q_yy : ups_Q_yy;  /* M_tt_ups_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + ups_Q_yz : ups_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + ups_Q_zz : ups_Q_zz;  /* M_tt_ups_zz */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -1572,27 +1571,27 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_ups_xx = sums[0*w + k];
         const real m_star = m->m_star;
-        const real total_ups_xx = sums[0*w + k];
-        const real M_tt_xx = m_star - total_ups_xx;
-        const real total_ups_yy = sums[3*w + k];
-        const real M_tt_yy = m_star - total_ups_yy;
-        const real total_ups_zz = sums[5*w + k];
-        const real M_tt_zz = m_star - total_ups_zz;
+        const real M_tt_xx = M_tt_ups_xx + m_star;
+        const real M_tt_ups_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_ups_yy + m_star;
+        const real M_tt_ups_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_ups_zz + m_star;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_ups_xy = sums[1*w + k];
-        M[1*w + k] = -total_ups_xy;
-        M[3*w + k] = -total_ups_xy;
-        const real total_ups_xz = sums[2*w + k];
-        M[2*w + k] = -total_ups_xz;
-        M[6*w + k] = -total_ups_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[6*w + k] = M_tt_xz;
         M[4*w + k] = M_tt_yy;
-        const real total_ups_yz = sums[4*w + k];
-        M[5*w + k] = -total_ups_yz;
-        M[7*w + k] = -total_ups_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[5*w + k] = M_tt_yz;
+        M[7*w + k] = M_tt_yz;
         M[8*w + k] = M_tt_zz;
-        t->total[k] += (M_tt_xx + (total_ups_xy + total_ups_xz)) + (M_tt_yy + (total_ups_yz +
-            M_tt_zz));
+        t->total[k] += (M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz));
     }
 }
 
@@ -1685,137 +1684,142 @@ INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
-            t_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
+            + axis_x_ups_axes2_z*t_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
+        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
+        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
+            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
             axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
-            axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
         /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real ups_qdd_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2;
-        const real ups_qdd_1_o = inv_ups_root_1*ups_bias_z;
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
+        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z;
         /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o;
+        const real ups_alpha_1_o_t = ups_qdd_1_o_t*ups_s_2;
+        const real ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o_t;
         /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_x = -ups_alpha_1_o_t - ups_zeta_2_x;
-        const real ups_alpha_2_o_y = ups_alpha_1_o_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t;
+        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_xy = ups_qdd_2_o_t - 2*ups_W_2_xy;
-        const real ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y;
-        const real ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x;
+        const real ups_B_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2;
+        const real ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2*ups_W_2_in_axes2_xy;
+        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
         /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_phi_3_o_x = ups_alpha_1_o_t_2*ups_h_3_y - ups_B_2_o_xy*ups_h_3_z -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_group_2_y = m->ups_h_group_2_y[i];
-        const real ups_h_group_2_z = m->ups_h_group_2_z[i];
-        const real ups_mu_2_o_x = ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_yz*(ups_W_2_t_2 -
-            ups_W_2_t_3) + ups_g_r3_y*ups_h_group_2_z - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_J_group_2_xz*ups_qdd_2_o_t - ups_Sigma_2_zz*ups_alpha_1_o_t -
-            ups_g_r1_x*ups_h_group_2_y;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_group_2_x = m->ups_h_group_2_x[i];
-        const real ups_mu_2_o_y = ups_B_2_o_zy*ups_J_group_2_xy + ups_Sigma_2_zz*ups_alpha_1_o_t_2
-            + ups_g_r1_x*ups_h_group_2_x - ups_B_2_o_xy*ups_J_group_2_yz -
-            ups_B_2_o_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) -
-            ups_g_r3_x*ups_h_group_2_z;
-        const real ups_mu_2_o_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_yz*ups_alpha_1_o_t_2 + ups_g_r3_x*ups_h_group_2_y -
-            ups_B_2_o_xy*ups_Sigma_2_yy - ups_J_group_2_xz*ups_alpha_1_o_t -
-            ups_Sigma_2_xx*ups_qdd_2_o_t - ups_g_r3_y*ups_h_group_2_x;
+        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t;
+        const real ups_mu_2_o_t_2 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_c_2*ups_mu_2_o_t_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_mu_2_o_t_2*ups_s_2;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_group_2_in_axes2_y = m->ups_h_group_2_in_axes2_y[i];
+        const real ups_h_group_2_in_axes2_z = m->ups_h_group_2_in_axes2_z[i];
+        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+            ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
+            ups_g_in_axes2_z*ups_h_group_2_in_axes2_y;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_group_2_in_axes2_x = m->ups_h_group_2_in_axes2_x[i];
+        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_g_in_axes2_x*ups_h_group_2_in_axes2_z;
+        const real ups_mu_2_o_in_axes2_z = ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
+            ups_phi_3_o_t) + ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
+            ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x;
         /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ups_c_o_y = ups_h_3_x*ups_qdd_2_o_t - inv_ups_root_2*ups_mu_2_o_z -
-            ups_alpha_1_o_t*ups_h_3_y - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_o_z = ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x;
+        const real ups_c_o_in_axes2_y = ups_B_2_o_t*ups_h_3_in_spec2_x -
+            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_alpha_1_o_t*ups_h_3_in_spec2_y -
+            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
+            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_in_base_x = ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z;
-        const real ups_U_in_base_y = ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z;
-        const real ups_U_in_base_z = ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_U_in_base_x : ups_U_in_base_x;  /* total_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_U_in_base_y : ups_U_in_base_y;  /* total_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_U_in_base_z : ups_U_in_base_z;  /* total_ups_z */
+        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_U_x : ups_U_x;  /* Z_t_ups_x */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_U_y : ups_U_y;  /* Z_t_ups_y */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_U_z : ups_U_z;  /* Z_t_ups_z */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -1835,14 +1839,15 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = m->Z_p_x;
-        const real total_ups_x = sums[0*w + k];
-        const real Z_t_x = total_ups_x - Z_p_x;
+        const real Z_t_ups_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_ups_x;
         const real Z_p_y = m->Z_p_y;
-        const real total_ups_y = sums[1*w + k];
-        const real Z_t_y = total_ups_y - Z_p_y;
+        const real Z_t_ups_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_ups_y;
         const real Z_p_z = m->Z_p_z;
-        const real total_ups_z = sums[2*w + k];
-        const real Z_t_z = total_ups_z - Z_p_z;
+        const real Z_t_ups_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_ups_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
@@ -1930,23 +1935,24 @@ INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
-        o[4*count + k] = ups_axis_x_x + (ups_axis_x_y + ups_axis_x_z);
+        /* (ups-w_2) reciprocal vector 2 */
+        const real ups_w_2_in_axes2_y = 1/ups_root_2;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = ups_w_3_x;
+        o[1*count + k] = ups_w_3_y;
+        o[2*count + k] = ups_w_3_z;
+        o[4*count + k] = ups_w_3_x + (ups_w_3_y + ups_w_3_z);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_2) > TOLERANCE*R(0.8));
@@ -2074,154 +2080,163 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
-            t_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
+            + axis_x_ups_axes2_z*t_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
+        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
+        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
+            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
             axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
-            axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
         /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-S_ddot) acceleration of the connection point */
         const real t_ddot_x = s[6*w + j];
-        const real ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x;
         const real t_ddot_y = s[7*w + j];
-        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y;
         const real t_ddot_z = s[8*w + j];
-        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z;
-        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
-            axis_z_ups_axes2_in_base_y*t_ddot_y + axis_z_ups_axes2_in_base_z*t_ddot_z;
+        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*t_ddot_x +
+            axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_x = t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y +
-            t_ddot_z*ups_axis_x_z - ups_g_r3_x;
-        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
-        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
         /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
-        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
-        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
-        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        const real ups_B_2_t = axis_y_ups_axes2_x*t_ddot_x;
+        const real ups_B_2_t_2 = axis_y_ups_axes2_y*t_ddot_y;
+        const real ups_B_2_t_3 = axis_y_ups_axes2_z*t_ddot_z;
+        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t;
+        const real ups_acc_3_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_acc_3_t_4*ups_c_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_acc_3_t_4*ups_s_2;
+        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*t_ddot_x +
+            axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z - ups_g_in_axes2_x;
+        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
         /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_phi_3_x = -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y -
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3);
+        const real ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_phi_3_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_phi_3_in_axes2_x = ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
+            ups_h_3_in_spec2_x*(-ups_phi_3_t - ups_phi_3_t_2) -
+            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
-            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
-            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
-            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
+            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_phi_3_t) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
-            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
-        const real ups_c_in_base_x = axis_y_ups_axes2_x*ups_c_y +
-            axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x;
-        const real ups_c_in_base_y = axis_y_ups_axes2_y*ups_c_y +
-            axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x;
-        const real ups_c_in_base_z = axis_y_ups_axes2_z*ups_c_y +
-            axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x;
-        terms[0*count + k] = add ? terms[0*count + k] + ups_c_in_base_x : ups_c_in_base_x;  /* total_ups_x */
-        terms[1*count + k] = add ? terms[1*count + k] + ups_c_in_base_y : ups_c_in_base_y;  /* total_ups_y */
-        terms[2*count + k] = add ? terms[2*count + k] + ups_c_in_base_z : ups_c_in_base_z;  /* total_ups_z */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_phi_3_t_2);
+        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_x = axis_y_ups_axes2_x*ups_c_in_axes2_y +
+            axis_z_ups_axes2_x*ups_c_in_axes2_z - axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
+        const real ups_c_y = axis_y_ups_axes2_y*ups_c_in_axes2_y +
+            axis_z_ups_axes2_y*ups_c_in_axes2_z - axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
+        const real ups_c_z = axis_y_ups_axes2_z*ups_c_in_axes2_y +
+            axis_z_ups_axes2_z*ups_c_in_axes2_z - axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_c_x : ups_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + ups_c_y : ups_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + ups_c_z : ups_c_z;  /* R_t_t_3 */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = axis_x_ups_axes2_x;
+        o[1*count + k] = axis_x_ups_axes2_y;
+        o[2*count + k] = axis_x_ups_axes2_z;
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -2244,15 +2259,16 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[9*w + k];
-        const real total_ups_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_ups_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[10*w + k];
-        const real total_ups_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_ups_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[11*w + k];
-        const real total_ups_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_ups_z;
+        const real R_t_z = f_p_z - R_t_t_3;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
@@ -2340,27 +2356,29 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg,
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-q_1) displacement of joint 1 */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        /* (ups-q_1) displacement of joint 1 */
-        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
         /* (ups-q_2) displacement of joint 2 */
-        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1);
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_in_axes1_z,
+            inv_ups_root_2*ups_root_1);
+        /* (ups-q_1) displacement of joint 1 */
         o[0*count + k] = ups_q_1;
+        /* (ups-q_2) displacement of joint 2 */
         o[1*count + k] = ups_q_2;
+        /* (ups-q_3) displacement of joint 3 */
         o[2*count + k] = ups_root_2;
         o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
@@ -2463,54 +2481,52 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
         /* (ups-S_dot) velocity of the connection point */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
-            t_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
+            + axis_x_ups_axes2_z*t_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
+        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
+        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
+            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
         /* (ups-qd_2) rate of joint 2 */
-        const real ups_qd_2 = inv_ups_root_2*(t_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
-            t_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
-            t_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x));
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
-            axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
+        const real ups_qd_2 = inv_ups_root_2*(t_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
+            t_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
+            t_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y));
+        /* (ups-qd_1) rate of joint 1 */
         o[0*count + k] = ups_qd_1;
+        /* (ups-qd_2) rate of joint 2 */
         o[1*count + k] = ups_qd_2;
-        o[2*count + k] = ups_S_dot_tip_x;
-        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_tip_x);
+        /* (ups-qd_3) rate of joint 3 */
+        o[2*count + k] = ups_S_dot_in_axes2_x;
+        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -2625,77 +2641,76 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
         /* (ups-S_dot) velocity of the connection point */
+        const real inv_ups_root_2 = 1/ups_root_2;
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
-            t_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
+            + axis_x_ups_axes2_z*t_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
+        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
+        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
+            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
             axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
-            axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t;
-        const real ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1;
+        const real ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z;
+        const real ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_omega_1_t*ups_qd_2*ups_root_2;
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
         const real t_ddot_x = s[6*w + j];
         const real t_ddot_y = s[7*w + j];
         const real t_ddot_z = s[8*w + j];
-        const real ups_rel_x = t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y +
-            t_ddot_z*ups_axis_x_z + ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 +
-            ups_qd_2*ups_qd_2);
-        const real ups_rel_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
-            axis_z_ups_axes2_in_base_y*t_ddot_y + axis_z_ups_axes2_in_base_z*t_ddot_z -
-            ups_bias_z;
+        const real ups_rel_in_axes2_x = axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y
+            + axis_x_ups_axes2_z*t_ddot_z -
+            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2);
+        const real ups_rel_in_axes2_z = axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y
+            + axis_z_ups_axes2_z*t_ddot_z - ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
+        /* (ups-qdd_2) acceleration of joint 2 */
         const real ups_qdd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_ddot_x +
-            axis_y_ups_axes2_y*t_ddot_y + axis_y_ups_axes2_z*t_ddot_z - ups_bias_t*ups_qd_2) +
-            ups_omega_1_t*ups_omega_1_t_2;
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
+            axis_y_ups_axes2_y*t_ddot_y + axis_y_ups_axes2_z*t_ddot_z - ups_bias_t*ups_qd_2) -
+            ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+        /* (ups-qdd_1) acceleration of joint 1 */
         o[0*count + k] = ups_qdd_1;
+        /* (ups-qdd_2) acceleration of joint 2 */
         o[1*count + k] = ups_qdd_2;
-        o[2*count + k] = ups_rel_x;
-        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_x);
+        /* (ups-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = ups_rel_in_axes2_x;
+        o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -2810,157 +2825,166 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 -
-            ups_base_frame_xx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 -
-            ups_base_frame_yx*ups_c_1;
-        const real axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 -
-            ups_base_frame_zx*ups_c_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (ups-S_dot) velocity of the connection point */
+        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
+        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
+        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
         const real t_dot_x = s[3*w + j];
         const real t_dot_y = s[4*w + j];
         const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y +
-            t_dot_z*ups_axis_x_z;
+        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
+            + axis_x_ups_axes2_z*t_dot_z;
+        /* (ups-qd_1) rate of joint 1 */
+        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
+        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
+        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
+        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
+            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
         /* (ups-qd_2) rate of joint 2 */
+        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
         const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
             axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x +
-            axis_z_ups_axes2_in_base_y*t_dot_y + axis_z_ups_axes2_in_base_z*t_dot_z);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_t = ups_qd_1*ups_s_2;
-        const real ups_omega_1_t_2 = ups_c_2*ups_qd_1;
-        /* (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2;
-        const real ups_zeta_2_y = ups_omega_1_t*ups_qd_2;
+        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
+        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
         /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_t = ups_omega_1_t*ups_omega_1_t;
-        const real ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2;
-        const real ups_W_2_t_3 = ups_qd_2*ups_qd_2;
-        const real ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_tip_x;
-        const real ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2*ups_root_2*ups_zeta_2_y;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x;
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y;
-        const real ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2;
+        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-S_ddot) acceleration of the connection point */
         const real t_ddot_x = s[6*w + j];
-        const real ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x;
         const real t_ddot_y = s[7*w + j];
-        const real ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y;
         const real t_ddot_z = s[8*w + j];
-        const real ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z;
-        const real ups_S_ddot_tip_z = axis_z_ups_axes2_in_base_x*t_ddot_x +
-            axis_z_ups_axes2_in_base_y*t_ddot_y + axis_z_ups_axes2_in_base_z*t_ddot_z;
+        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*t_ddot_x +
+            axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z;
+        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
+            ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_z = ups_S_ddot_tip_z - ups_bias_z;
+        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1_t = inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_z;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_x = t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y +
-            t_ddot_z*ups_axis_x_z - ups_g_r3_x;
-        const real ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y;
-        const real ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x;
+        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_t = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_t_2 = ups_c_2*ups_qdd_1;
+        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
+        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
         /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x;
-        const real ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y;
+        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
         /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_xy = -2*ups_W_2_xy - ups_qdd_1_t;
-        const real ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y;
-        const real ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x;
+        const real ups_B_2_t = axis_y_ups_axes2_x*t_ddot_x;
+        const real ups_B_2_t_2 = axis_y_ups_axes2_y*t_ddot_y;
+        const real ups_B_2_t_3 = axis_y_ups_axes2_z*t_ddot_z;
+        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_bias_t*ups_qd_2);
+        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t;
+        const real ups_acc_3_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_acc_3_t_4*ups_c_2;
+        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_acc_3_t_4*ups_s_2;
+        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*t_ddot_x +
+            axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z - ups_g_in_axes2_x;
+        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+            ups_g_in_axes2_y;
+        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_J_group_2_xy = m->ups_J_group_2_xy[i];
-        const real ups_J_group_2_xz = m->ups_J_group_2_xz[i];
-        const real ups_J_group_2_yz = m->ups_J_group_2_yz[i];
-        const real ups_Sigma_2_yy = m->ups_Sigma_2_yy[i];
-        const real ups_Sigma_2_zz = m->ups_Sigma_2_zz[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
-        const real ups_mu_2_x = ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t +
-            ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t +
-            ups_g_r1_x*ups_h_2_z + ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy -
-            ups_acc_3_y*ups_h_3_y - ups_acc_3_z*ups_h_3_z;
-        const real ups_Sigma_2_xx = m->ups_Sigma_2_xx[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_mu_2_y = ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y +
-            ups_g_r1_x*ups_h_2_x - ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx -
-            ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 -
-            ups_acc_3_z*ups_h_3_x - ups_g_r3_x*ups_h_2_y;
-        const real ups_mu_2_z = ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) +
-            ups_J_group_2_xz*ups_alpha_1_t + ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z +
-            ups_acc_3_y*ups_h_3_x - ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 -
-            ups_g_r3_x*ups_h_2_z - ups_g_r3_y*ups_h_2_x;
+        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
+        const real ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
+        const real ups_mu_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
+            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_mu_2_t_2) +
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_y = ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z -
-            ups_h_3_x*ups_qdd_1_t - ups_h_3_z*(ups_W_2_t + ups_W_2_t_3);
-        const real ups_c_z = ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x;
+        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_mu_2_t_3);
+        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         const real ups_link3_mass = m->ups_link3_mass[i];
-        const real ups_c_true_x = ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y +
-            ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) - ups_acc_3_x*ups_link3_mass;
-        const real ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass;
-        const real ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass;
-        const real ups_c_true_in_base_x = axis_y_ups_axes2_x*ups_c_true_y +
-            axis_z_ups_axes2_in_base_x*ups_c_true_z + ups_axis_x_x*ups_c_true_x;
-        const real ups_c_true_in_base_y = axis_y_ups_axes2_y*ups_c_true_y +
-            axis_z_ups_axes2_in_base_y*ups_c_true_z + ups_axis_x_y*ups_c_true_x;
-        const real ups_c_true_in_base_z = axis_y_ups_axes2_z*ups_c_true_y +
-            axis_z_ups_axes2_in_base_z*ups_c_true_z + ups_axis_x_z*ups_c_true_x;
-        o[0*count + k] = ups_c_true_in_base_x;
-        o[1*count + k] = ups_c_true_in_base_y;
-        o[2*count + k] = ups_c_true_in_base_z;
-        o[3*count + k] = ups_axis_x_x;
-        o[4*count + k] = ups_axis_x_y;
-        o[5*count + k] = ups_axis_x_z;
+        const real ups_c_true_in_axes2_x = ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
+            ups_acc_3_in_axes2_x*ups_link3_mass - ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+            ups_h_3_in_spec2_x*(-ups_mu_2_t_2 - ups_mu_2_t_3);
+        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass;
+        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass;
+        const real ups_c_true_x = axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_x*ups_c_true_in_axes2_y + axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
+        const real ups_c_true_y = axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_y*ups_c_true_in_axes2_y + axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
+        const real ups_c_true_z = axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
+            axis_y_ups_axes2_z*ups_c_true_in_axes2_y + axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
+        /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
+        o[0*count + k] = ups_c_true_x;
+        o[1*count + k] = ups_c_true_y;
+        o[2*count + k] = ups_c_true_z;
+        /* (ups-w_3) reciprocal vector 3 */
+        o[3*count + k] = axis_x_ups_axes2_x;
+        o[4*count + k] = axis_x_ups_axes2_y;
+        o[5*count + k] = axis_x_ups_axes2_z;
         o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -3057,52 +3081,53 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         /* (ups-root_1) amplitude, with the sign of the branch */
         const real ups_branch_1 = m->ups_branch_1[i];
         const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_ups_root_1 = 1/ups_root_1;
+        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
+        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+        const real ups_s_1 = inv_ups_root_1*ups_px_1;
         /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = inv_ups_root_2*ups_root_1;
+        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
         /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_t;
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real ups_g_r0_x = m->ups_g_r0_x[i];
-        const real ups_g_r0_y = m->ups_g_r0_y[i];
-        const real ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1;
+        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
         /* (potential) potential energy */
-        const real ups_b_r0_x = m->ups_b_r0_x[i];
-        const real ups_b_r0_y = m->ups_b_r0_y[i];
-        const real ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1;
-        const real ups_b_r0_z = m->ups_b_r0_z[i];
-        const real ups_g_r0_z = m->ups_g_r0_z[i];
-        const real ups_h_2_x = m->ups_h_2_x[i];
-        const real ups_h_2_y = m->ups_h_2_y[i];
-        const real ups_h_2_z = m->ups_h_2_z[i];
-        const real ups_h_3_x = m->ups_h_3_x[i];
-        const real ups_h_3_y = m->ups_h_3_y[i];
-        const real ups_h_3_z = m->ups_h_3_z[i];
+        const real ups_acc_3_t = m->ups_acc_3_t[i];
+        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+        const real ups_potential_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
+        const real ups_potential_t = m->ups_potential_t[i];
+        const real ups_potential_t_2 = m->ups_potential_t_2[i];
+        const real ups_potential_t_5 = -ups_c_1_t*ups_potential_t_2 - ups_potential_t*ups_s_1;
+        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
         const real ups_link2_mass = m->ups_link2_mass[i];
-        const real ups_potential_t = (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y +
-            ups_h_3_y + ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) +
-            (ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x +
-            ups_link2_mass*(ups_b_r0_z*ups_s_2 - ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z -
-            ups_g_r1_y*ups_s_2)*(ups_h_2_z + ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 -
-            ups_b_r1_y*ups_s_2));
-        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t : ups_potential_t;  /* total_ups */
+        const real ups_potential_t_3 = m->ups_potential_t_3[i];
+        const real ups_potential_t_6 = (ups_acc_3_t_3*ups_c_2 +
+            ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(ups_c_2*ups_potential_t_3 - ups_potential_t_5*ups_s_2)) -
+            (ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t)*(ups_h_2_in_spec2_y +
+            ups_h_3_in_spec2_y + ups_link2_mass*(ups_potential_t_2*ups_s_1 -
+            ups_c_1_t*ups_potential_t)) - (ups_acc_3_t_3*ups_s_2 -
+            ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
+            ups_link2_mass*(ups_c_2*ups_potential_t_5 + ups_potential_t_3*ups_s_2));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_potential_t_6 : ups_potential_t_6;  /* potential_ups */
         o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
@@ -3120,8 +3145,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[3*w + k];
-        const real total_ups = sums[0*w + k];
-        const real potential_ = -potential_t - total_ups;
+        const real potential_ups = sums[0*w + k];
+        const real potential_ = potential_ups - potential_t;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -3155,6 +3181,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -3201,45 +3228,46 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
         const real ups_base_frame_yz = m->ups_base_frame_yz[i];
         const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_t = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
             ups_S_z*ups_base_frame_zz;
         /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t;
+        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
         /* (ups-root_2) amplitude, with the sign of the branch */
         const real ups_branch_2 = m->ups_branch_2[i];
         const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_axis_x_x = inv_ups_root_2*ups_S_x;
-        const real ups_axis_x_y = inv_ups_root_2*ups_S_y;
-        const real ups_axis_x_z = inv_ups_root_2*ups_S_z;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real ups_spread_t = b_c_x - ups_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real ups_spread_t_2 = b_c_y - ups_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real ups_spread_t_3 = b_c_z - ups_platform_point_z;
-        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
-            ups_spread_t_3*ups_spread_t_3;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_pivot_size = magnitude(ups_rho2_1);
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
-        /* (ups-w_1) reciprocal vector 1 */
-        const real ups_pivot_size_3 = magnitude(ups_root_1);
-        const real ups_pivot_size_4 = magnitude(ups_root_2);
+        /* (ups-w_2) reciprocal vector 2 */
+        const real ups_w_2_in_axes2_y = 1/ups_root_2;
+        /* (ups-w_3) reciprocal vector 3 */
+        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real ups_pivot_size = magnitude(ups_rho2_1);
+        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
+        const real ups_pivot_size_3 = magnitude(ups_root_1);
+        const real ups_pivot_size_4 = magnitude(ups_root_2);
         const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
             R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
-        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* total_ups */
-        o[0*count + k] = ups_axis_x_x;
-        o[1*count + k] = ups_axis_x_y;
-        o[2*count + k] = ups_axis_x_z;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real ups_spread_t = b_c_in_platform_x - ups_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z;
+        const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
+            ups_spread_t_3*ups_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + ups_spread_t_4 : ups_spread_t_4;  /* spread_ups */
+        /* (ups-w_3) reciprocal vector 3 */
+        o[0*count + k] = ups_w_3_x;
+        o[1*count + k] = ups_w_3_y;
+        o[2*count + k] = ups_w_3_z;
+        /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[3*count + k] = ups_least_pivots;
-        o[5*count + k] = (ups_axis_x_x + ups_axis_x_y) + (ups_axis_x_z + ups_least_pivots);
+        o[5*count + k] = (ups_w_3_x + ups_w_3_y) + (ups_w_3_z + ups_least_pivots);
         o[4*count + k] = UNLESS(magnitude(ups_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(ups_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(ups_root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(ups_root_2) >
@@ -3266,8 +3294,9 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        const real total_ups = sums[0*w + k];
-        const real spread_ = spread_t*root(total_ups);
+        const real spread_ups = sums[0*w + k];
+        const real spread_ = spread_t*root(spread_ups);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -92,19 +92,22 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type ups; copies of the first fill up */
-    tripod_3ups_real ups_J_group_2_xx[4], ups_J_group_2_xy[4], ups_J_group_2_xz[4],
-            ups_J_group_2_yy[4], ups_J_group_2_yz[4], ups_J_group_2_zz[4], ups_Sigma_2_xx[4],
-            ups_Sigma_2_yy[4], ups_Sigma_2_zz[4], ups_b_r0_x[4], ups_b_r0_y[4], ups_b_r0_z[4],
+    tripod_3ups_real ups_J_group_2_in_axes2_xx[4], ups_J_group_2_in_axes2_xy[4],
+            ups_J_group_2_in_axes2_xz[4], ups_J_group_2_in_axes2_yy[4], ups_J_group_2_in_axes2_yz[4],
+            ups_J_group_2_in_axes2_zz[4], ups_Sigma_2_in_axes2_xx[4], ups_Sigma_2_in_axes2_yy[4],
+            ups_Sigma_2_in_axes2_zz[4], ups_acc_3_t[4], ups_acc_3_t_2[4], ups_acc_3_t_3[4],
             ups_base_frame_xx[4], ups_base_frame_xy[4], ups_base_frame_xz[4], ups_base_frame_yx[4],
             ups_base_frame_yy[4], ups_base_frame_yz[4], ups_base_frame_zx[4], ups_base_frame_zy[4],
             ups_base_frame_zz[4], ups_base_point_x[4], ups_base_point_y[4], ups_base_point_z[4],
-            ups_branch_1[4], ups_branch_2[4], ups_g_r0_x[4], ups_g_r0_y[4], ups_g_r0_z[4],
-            ups_h_2_x[4], ups_h_2_y[4], ups_h_2_z[4], ups_h_3_x[4], ups_h_3_y[4], ups_h_3_z[4],
-            ups_h_group_2_x[4], ups_h_group_2_y[4], ups_h_group_2_z[4], ups_link2_mass[4],
-            ups_link3_mass[4], ups_platform_point_x[4], ups_platform_point_y[4],
-            ups_platform_point_z[4];
-    tripod_3ups_real Z_p_x, Z_p_y, Z_p_z, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
+            ups_branch_1[4], ups_branch_2[4], ups_h_2_in_spec2_x[4], ups_h_2_in_spec2_y[4],
+            ups_h_2_in_spec2_z[4], ups_h_3_in_spec2_x[4], ups_h_3_in_spec2_y[4],
+            ups_h_3_in_spec2_z[4], ups_h_group_2_in_axes2_x[4], ups_h_group_2_in_axes2_y[4],
+            ups_h_group_2_in_axes2_z[4], ups_link2_mass[4], ups_link3_mass[4],
+            ups_platform_point_x[4], ups_platform_point_y[4], ups_platform_point_z[4],
+            ups_potential_t[4], ups_potential_t_2[4], ups_potential_t_3[4];
+    tripod_3ups_real Z_p_x, Z_p_y, Z_p_z, b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z,
+            gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, legs_size, m_star,
+            spread_t;
 } tripod_3ups_model;
 
 extern const tripod_3ups_params tripod_3ups_default_params;

@@ -318,7 +318,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -495,123 +495,126 @@ def _prepare(p):
     spread_t = 0.3333333333333333*sqrt(3.0)
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.385640646055102*spread_t
+    # (ups-h_2) first moment of link 2 about the origin of link 2
+    ups_h_2_in_spec2_x = ups_link2_centre_of_mass_x*ups_link2_mass
+    ups_h_2_in_spec2_y = ups_link2_centre_of_mass_y*ups_link2_mass
+    ups_h_2_in_spec2_z = ups_link2_centre_of_mass_z*ups_link2_mass
     # (ups-h_3) first moment of link 3 about the connection point
-    ups_h_3_x = ups_link3_centre_of_mass_x*ups_link3_mass
-    ups_h_3_y = ups_link3_centre_of_mass_y*ups_link3_mass
-    ups_h_3_z = ups_link3_centre_of_mass_z*ups_link3_mass
-    # (ups-J_2) inertia tensor of link 2 about the origin of link 2
-    ups_J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
-    ups_J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
-    ups_J_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
-    ups_J_2_t_4 = ups_J_2_t + ups_J_2_t_2 + ups_J_2_t_3
-    # (ups-J_3) inertia tensor of link 3 about the connection point
-    ups_J_3_t = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
-    ups_J_3_t_2 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
-    ups_J_3_t_3 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
-    ups_J_3_t_4 = ups_J_3_t + ups_J_3_t_2 + ups_J_3_t_3
-    # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
-    ups_J_group_2_xx = (
-    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(ups_J_2_t - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t - ups_J_3_t_4)
+    ups_h_3_in_spec2_x = ups_link3_centre_of_mass_x*ups_link3_mass
+    ups_h_3_in_spec2_y = ups_link3_centre_of_mass_y*ups_link3_mass
+    ups_h_3_in_spec2_z = ups_link3_centre_of_mass_z*ups_link3_mass
+    # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+    ups_acc_3_t = (
+    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
     )
-    ups_J_group_2_xy = (
+    ups_acc_3_t_2 = (
+    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
+    )
+    ups_acc_3_t_3 = (
+    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    )
+    # (ups-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    ups_J_group_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x
+    ups_J_group_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y
+    ups_J_group_2_t_3 = ups_link2_centre_of_mass_z*ups_link2_centre_of_mass_z
+    ups_J_group_2_t_4 = ups_J_group_2_t + ups_J_group_2_t_2 + ups_J_group_2_t_3
+    ups_J_group_2_t_5 = ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_x
+    ups_J_group_2_t_6 = ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_y
+    ups_J_group_2_t_7 = ups_link3_centre_of_mass_z*ups_link3_centre_of_mass_z
+    ups_J_group_2_t_8 = ups_J_group_2_t_5 + ups_J_group_2_t_6 + ups_J_group_2_t_7
+    ups_J_group_2_in_axes2_xx = (
+    ups_link2_inertia_xx + ups_link3_inertia_xx - ups_link2_mass*(ups_J_group_2_t -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_5 - ups_J_group_2_t_8)
+    )
+    ups_J_group_2_in_axes2_xy = (
     ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_xz - ups_link3_inertia_xz
     )
-    ups_J_group_2_xz = (
+    ups_J_group_2_in_axes2_xz = (
     ups_link2_inertia_xy + ups_link3_inertia_xy -
         ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_y*ups_link2_mass -
         ups_link3_centre_of_mass_x*ups_link3_centre_of_mass_y*ups_link3_mass
     )
-    ups_J_group_2_yy = (
-    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(ups_J_2_t_3 - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t_3 - ups_J_3_t_4)
+    ups_J_group_2_in_axes2_yy = (
+    ups_link2_inertia_zz + ups_link3_inertia_zz - ups_link2_mass*(ups_J_group_2_t_3 -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_7 - ups_J_group_2_t_8)
     )
-    ups_J_group_2_yz = (
+    ups_J_group_2_in_axes2_yz = (
     ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_z*ups_link2_mass +
         ups_link3_centre_of_mass_y*ups_link3_centre_of_mass_z*ups_link3_mass -
         ups_link2_inertia_yz - ups_link3_inertia_yz
     )
-    ups_J_group_2_zz = (
-    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_2_t_2 - ups_J_2_t_4) -
-        ups_link3_mass*(ups_J_3_t_2 - ups_J_3_t_4)
-    )
-    # (ups-h_2) first moment of link 2 about the origin of link 2
-    ups_h_2_x = ups_link2_centre_of_mass_x*ups_link2_mass
-    ups_h_2_y = ups_link2_centre_of_mass_y*ups_link2_mass
-    ups_h_2_z = ups_link2_centre_of_mass_z*ups_link2_mass
-    # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-    ups_g_r0_x = (
-    gravity_x*ups_base_frame_xx + gravity_y*ups_base_frame_yx + gravity_z*ups_base_frame_zx
-    )
-    ups_g_r0_y = (
-    gravity_x*ups_base_frame_xy + gravity_y*ups_base_frame_yy + gravity_z*ups_base_frame_zy
-    )
-    ups_g_r0_z = (
-    gravity_x*ups_base_frame_xz + gravity_y*ups_base_frame_yz + gravity_z*ups_base_frame_zz
+    ups_J_group_2_in_axes2_zz = (
+    ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_group_2_t_2 -
+        ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8)
     )
     # (ups-trace_J_2) half the trace of that inertia tensor
-    ups_trace_J_2 = 0.5*ups_J_group_2_xx + 0.5*ups_J_group_2_yy + 0.5*ups_J_group_2_zz
+    ups_trace_J_2 = (
+    0.5*ups_J_group_2_in_axes2_xx + 0.5*ups_J_group_2_in_axes2_yy + 0.5*ups_J_group_2_in_axes2_zz
+    )
     # (ups-Sigma_2) second moment of mass of the links that turn with link 2
-    ups_Sigma_2_xx = ups_trace_J_2 - ups_J_group_2_xx
-    ups_Sigma_2_yy = ups_trace_J_2 - ups_J_group_2_yy
-    ups_Sigma_2_zz = ups_trace_J_2 - ups_J_group_2_zz
+    ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx
+    ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy
+    ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz
     # (ups-h_group_2) first moments of the links that turn with link 2
-    ups_h_group_2_x = ups_h_2_x + ups_h_3_x
-    ups_h_group_2_y = -ups_h_2_z - ups_h_3_z
-    ups_h_group_2_z = ups_h_2_y + ups_h_3_y
+    ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x
+    ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z
+    ups_h_group_2_in_axes2_z = ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
     # (h_star) first moment about the platform origin
     ups_h_star_t = ups_link3_mass*ups_platform_point_x
     ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
     ups_h_star_t_3 = ups_link3_mass*ups_platform_point_z
     # (potential) potential energy
-    ups_b_r0_x = (
+    ups_potential_t = (
     ups_base_frame_xx*ups_base_point_x + ups_base_frame_yx*ups_base_point_y +
         ups_base_frame_zx*ups_base_point_z
     )
-    ups_b_r0_y = (
+    ups_potential_t_2 = (
     ups_base_frame_xy*ups_base_point_x + ups_base_frame_yy*ups_base_point_y +
         ups_base_frame_zy*ups_base_point_z
     )
-    ups_b_r0_z = (
+    ups_potential_t_3 = (
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
-    total_ups_x = np.sum(np.broadcast_to(ups_h_star_t, _ups))
-    total_ups_y = np.sum(np.broadcast_to(ups_h_star_t_2, _ups))
-    total_ups_z = np.sum(np.broadcast_to(ups_h_star_t_3, _ups))
-    total_ups_x_2 = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
-    total_ups_y_2 = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
-    total_ups_z_2 = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
+    m_star_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    h_star_ups_in_platform_x = np.sum(np.broadcast_to(ups_h_star_t, _ups))
+    h_star_ups_in_platform_y = np.sum(np.broadcast_to(ups_h_star_t_2, _ups))
+    h_star_ups_in_platform_z = np.sum(np.broadcast_to(ups_h_star_t_3, _ups))
+    b_c_ups_in_platform_x = np.sum(np.broadcast_to(ups_platform_point_x, _ups))
+    b_c_ups_in_platform_y = np.sum(np.broadcast_to(ups_platform_point_y, _ups))
+    b_c_ups_in_platform_z = np.sum(np.broadcast_to(ups_platform_point_z, _ups))
     # (m_star) mass of the platform with the gathered masses
-    m_star = platform_mass + total_ups
-    # (Z_p) centripetal force and weight of the platform
-    Z_p_x = gravity_x*m_star
-    Z_p_y = gravity_y*m_star
-    Z_p_z = gravity_z*m_star
+    m_star = m_star_ups + platform_mass
     # (h_star) first moment about the platform origin
-    h_star_x = h_star_t + total_ups_x
-    h_star_y = h_star_t_2 + total_ups_y
-    h_star_z = h_star_t_3 + total_ups_z
+    h_star_x = h_star_t + h_star_ups_in_platform_x
+    h_star_y = h_star_t_2 + h_star_ups_in_platform_y
+    h_star_z = h_star_t_3 + h_star_ups_in_platform_z
+    # (Z_p) centripetal force and weight of the platform
+    Z_p_x = -gravity_x*m_star
+    Z_p_y = -gravity_y*m_star
+    Z_p_z = -gravity_z*m_star
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_ups_x_2
-    b_c_y = 0.3333333333333333*total_ups_y_2
-    b_c_z = 0.3333333333333333*total_ups_z_2
+    b_c_in_platform_x = 0.3333333333333333*b_c_ups_in_platform_x
+    b_c_in_platform_y = 0.3333333333333333*b_c_ups_in_platform_y
+    b_c_in_platform_z = 0.3333333333333333*b_c_ups_in_platform_z
     return {
         "dynamics": (
         (Z_p_x, Z_p_y, Z_p_z, m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-                    ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz,
+        (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+                    ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
+                    ups_J_group_2_in_axes2_zz, ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy,
+                    ups_Sigma_2_in_axes2_zz, ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3,
                     ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
                     ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
                     ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z,
-                    ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_3_x,
-                    ups_h_3_y, ups_h_3_z, ups_h_group_2_x, ups_h_group_2_y, ups_h_group_2_z,
-                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
+                    ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+                    ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y,
+                    ups_h_group_2_in_axes2_z, ups_platform_point_x, ups_platform_point_y,
+                    ups_platform_point_z,),
                 ),
             ),
         ),
@@ -619,11 +622,13 @@ def _prepare(p):
         (m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-                    ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        (ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+                    ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz,
+                    ups_J_group_2_in_axes2_zz, ups_base_frame_xx, ups_base_frame_xy,
+                    ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+                    ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -632,14 +637,15 @@ def _prepare(p):
         (Z_p_x, Z_p_y, Z_p_z,),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_h_group_2_x, ups_h_group_2_y,
-                    ups_h_group_2_z, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
+                    ups_h_group_2_in_axes2_x, ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -659,12 +665,14 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, m_star,),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
                     ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
@@ -709,14 +717,15 @@ def _prepare(p):
         (),
             (
                 (_ups,
-        (ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-                    ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-                    ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-                    ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-                    ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y,
-                    ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
-                    ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+        (ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+                    ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+                    ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx,
+                    ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
+                    ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
+                    ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+                    ups_branch_2, ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link3_mass,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,),
                 ),
             ),
         ),
@@ -724,18 +733,19 @@ def _prepare(p):
         (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, m_star,),
             (
                 (_ups,
-        (ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+        (ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
                     ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
                     ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
-                    ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
-                    ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-                    ups_platform_point_z,),
+                    ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
+                    ups_h_2_in_spec2_x, ups_h_2_in_spec2_y, ups_h_2_in_spec2_z,
+                    ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_link2_mass,
+                    ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+                    ups_potential_t, ups_potential_t_2, ups_potential_t_3,),
                 ),
             ),
         ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_ups,
         (ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
@@ -1168,14 +1178,16 @@ def _run_dynamics(m, X, V):
     sums = [0.0] * 9
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-            ups_J_group_2_zz, ups_Sigma_2_xx, ups_Sigma_2_yy, ups_Sigma_2_zz, ups_base_frame_xx,
-            ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy,
-            ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz,
-            ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2,
-            ups_g_r0_x, ups_g_r0_y, ups_g_r0_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_h_group_2_x,
-            ups_h_group_2_y, ups_h_group_2_z, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+        ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+            ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
@@ -1193,185 +1205,196 @@ def _run_dynamics(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1_t = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
+            axis_z_ups_axes2_z*t_dot_z)
+        )
+        # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
         )
         axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
         )
         axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
-        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
-        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
-        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
-        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
-        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_yy = (
-        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
-        )
-        ups_d_c_yz = (
-        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
-            inv_ups_root_2*ups_J_group_2_yz)
-        )
-        ups_d_c_zz = (
-        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) - ups_c_2*(ups_J_group_2_xy*ups_d_alpha_1_t -
-            ups_h_3_x - inv_ups_root_2*ups_J_group_2_yy))
-        )
-        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        ups_Q_t = 0.5*ups_d_c_yy
-        ups_Q_t_2 = 0.5*ups_d_c_zz
-        ups_Q_t_3 = (
-        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
-            ups_axis_x_x*ups_d_phi_3_t
-        )
-        ups_Q_t_4 = (
-        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
-            ups_axis_x_y*ups_d_phi_3_t
-        )
-        ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
-            ups_axis_x_z*ups_d_phi_3_t
-        )
-        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
-        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
-        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
-        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
-        ups_Q_t_10 = 2.0*ups_Q_t_9
-        ups_Q_t_11 = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
-        )
-        ups_Q_t_12 = (
-        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
-        )
-        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
-        ups_Q_t_14 = 2.0*ups_Q_t_13
-        ups_Q_t_15 = (
-        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
-        )
-        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
-        ups_Q_t_17 = 2.0*ups_Q_t_16
-        # (ups-S_dot) velocity of the connection point
-        ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y + t_dot_z*ups_axis_x_z
-        # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
             axis_y_ups_axes2_z*t_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x + axis_z_ups_axes2_in_base_y*t_dot_y +
-            axis_z_ups_axes2_in_base_z*t_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        ups_qdd_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2
-        ups_qdd_1_o = inv_ups_root_1*ups_bias_z
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
+        )
+        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z
+        # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_t = ups_qdd_1_o_t*ups_s_2
+        ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o_t
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        ups_alpha_2_o_x = -ups_alpha_1_o_t - ups_zeta_2_x
-        ups_alpha_2_o_y = ups_alpha_1_o_t_2 - ups_zeta_2_y
+        ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t
+        ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_xy = ups_qdd_2_o_t - 2.0*ups_W_2_xy
-        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
-        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
+        ups_B_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2
+        ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2.0*ups_W_2_in_axes2_xy
+        ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
+        ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
+        # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_x = (
-        ups_alpha_1_o_t_2*ups_h_3_y - ups_B_2_o_xy*ups_h_3_z - ups_h_3_x*(ups_W_2_t_2 +
-            ups_W_2_t_3)
+        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_o_in_axes2_x = (
+        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
+            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
         )
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
         # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_x = (
-        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) +
-            ups_g_r3_y*ups_h_group_2_z - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_J_group_2_xz*ups_qdd_2_o_t - ups_Sigma_2_zz*ups_alpha_1_o_t -
-            ups_g_r1_x*ups_h_group_2_y
+        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t
+        ups_mu_2_o_t_2 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_c_2*ups_mu_2_o_t_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_mu_2_o_t_2*ups_s_2
+        ups_mu_2_o_in_axes2_x = (
+        ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t -
+            ups_phi_3_o_t_2) + ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
+            ups_g_in_axes2_z*ups_h_group_2_in_axes2_y
         )
-        ups_mu_2_o_y = (
-        ups_B_2_o_zy*ups_J_group_2_xy + ups_Sigma_2_zz*ups_alpha_1_o_t_2 +
-            ups_g_r1_x*ups_h_group_2_x - ups_B_2_o_xy*ups_J_group_2_yz -
-            ups_B_2_o_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) -
-            ups_g_r3_x*ups_h_group_2_z
+        ups_mu_2_o_in_axes2_y = (
+        ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_g_in_axes2_x*ups_h_group_2_in_axes2_z
         )
-        ups_mu_2_o_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_yz*ups_alpha_1_o_t_2 +
-            ups_g_r3_x*ups_h_group_2_y - ups_B_2_o_xy*ups_Sigma_2_yy -
-            ups_J_group_2_xz*ups_alpha_1_o_t - ups_Sigma_2_xx*ups_qdd_2_o_t -
-            ups_g_r3_y*ups_h_group_2_x
+        ups_mu_2_o_in_axes2_z = (
+        ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
+            ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x
+        )
+        # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_yy = (
+        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
+            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
+        )
+        ups_d_c_in_axes2_yz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
+        )
+        ups_d_c_in_axes2_zz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
+            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
+            inv_ups_root_2*ups_J_group_2_in_axes2_xy))
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_c_o_y = (
-        ups_h_3_x*ups_qdd_2_o_t - inv_ups_root_2*ups_mu_2_o_z - ups_alpha_1_o_t*ups_h_3_y -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_o_in_axes2_y = (
+        ups_B_2_o_t*ups_h_3_in_spec2_x - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+            ups_alpha_1_o_t*ups_h_3_in_spec2_y - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
+            ups_phi_3_o_t_2)
         )
-        ups_c_o_z = (
-        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
+        ups_c_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
+            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
+        # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
+        ups_Q_t = 0.5*ups_d_c_in_axes2_yy
+        ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
+        ups_Q_t_3 = (
+        axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
+        )
+        ups_Q_t_4 = (
+        axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
+        )
+        ups_Q_t_5 = (
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy
+        )
+        ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz + axis_z_ups_axes2_x*ups_Q_t_2
+        ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz + axis_z_ups_axes2_y*ups_Q_t_2
+        ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz + axis_z_ups_axes2_z*ups_Q_t_2
+        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
+        ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_xy = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
+            - axis_z_ups_axes2_y*ups_Q_t_6
+        )
+        ups_Q_xz = (
+        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_6
+        )
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_yz = (
+        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_7
+        )
+        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
+        ups_Q_zz = -2.0*ups_Q_t_11
         # (ups-U) velocity and gravity terms of the leg force
-        ups_U_in_base_x = (
-        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z
+        ups_U_x = (
+        axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_x*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_y = (
-        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        ups_U_y = (
+        axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_y*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_y*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_z = (
-        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        ups_U_z = (
+        axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_z*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
@@ -1379,33 +1402,35 @@ def _run_dynamics(m, X, V):
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17,
-            ups_U_in_base_x, ups_U_in_base_y, ups_U_in_base_z,
+        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz, ups_U_x, ups_U_y, ups_U_z,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
     (
-    total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz,
-        total_ups_x, total_ups_y, total_ups_z,
+    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz, Z_t_ups_x, Z_t_ups_y,
+        Z_t_ups_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_ups_xx
-    M_tt_yy = m_star - total_ups_yy
-    M_tt_zz = m_star - total_ups_zz
+    M_tt_xx = M_tt_ups_xx + m_star
+    M_tt_yy = M_tt_ups_yy + m_star
+    M_tt_zz = M_tt_ups_zz + m_star
     # (Z_t) translational part of Z
-    Z_t_x = total_ups_x - Z_p_x
-    Z_t_y = total_ups_y - Z_p_y
-    Z_t_z = total_ups_z - Z_p_z
+    Z_t_x = Z_p_x + Z_t_ups_x
+    Z_t_y = Z_p_y + Z_t_ups_y
+    Z_t_z = Z_p_z + Z_t_ups_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_ups_xy
-    out_M[3] = -total_ups_xy
-    out_M[2] = -total_ups_xz
-    out_M[6] = -total_ups_xz
+    out_M[1] = M_tt_xy
+    out_M[3] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[6] = M_tt_xz
     out_M[4] = M_tt_yy
-    out_M[5] = -total_ups_yz
-    out_M[7] = -total_ups_yz
+    out_M[5] = M_tt_yz
+    out_M[7] = M_tt_yz
     out_M[8] = M_tt_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
@@ -1429,11 +1454,12 @@ def _run_M(m, X):
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xx, ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yy, ups_J_group_2_yz,
-            ups_J_group_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_x, ups_h_3_y, ups_h_3_z,
+        ups_J_group_2_in_axes2_xx, ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz,
+            ups_J_group_2_in_axes2_yy, ups_J_group_2_in_axes2_yz, ups_J_group_2_in_axes2_zz,
+            ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz, ups_base_frame_yx,
+            ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx, ups_base_frame_zy,
+            ups_base_frame_zz, ups_base_point_x, ups_base_point_y, ups_base_point_z, ups_branch_1,
+            ups_branch_2, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y, ups_h_3_in_spec2_z,
             ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
@@ -1452,118 +1478,113 @@ def _run_M(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1_t = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
-        axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
-        )
-        axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
-        )
-        axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
-        )
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = inv_ups_root_2*ups_S_x
+        ups_w_3_y = inv_ups_root_2*ups_S_y
+        ups_w_3_z = inv_ups_root_2*ups_S_z
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_t = inv_ups_root_1*ups_s_2
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_t = inv_ups_root_2*ups_h_3_z
-        ups_d_phi_3_t_2 = inv_ups_root_2*ups_h_3_y
-        ups_d_phi_3_t_3 = inv_ups_root_2*ups_h_3_x
+        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_yy = (
-        -ups_d_phi_3_t_3 - inv_ups_root_2*(ups_h_3_x + inv_ups_root_2*ups_J_group_2_zz)
+        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_yy = (
+        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
+            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
         )
-        ups_d_c_yz = (
-        ups_d_alpha_1_t*ups_h_3_y - inv_ups_root_2*(ups_J_group_2_xz*ups_d_alpha_1_t -
-            inv_ups_root_2*ups_J_group_2_yz)
+        ups_d_c_in_axes2_yz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
+            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
         )
-        ups_d_c_zz = (
-        ups_d_alpha_1_t*ups_h_3_z - ups_d_phi_3_t_3 -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_xx*ups_d_alpha_1_t - ups_h_3_z -
-            inv_ups_root_2*ups_J_group_2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_xy*ups_d_alpha_1_t - ups_h_3_x -
-            inv_ups_root_2*ups_J_group_2_yy))
+        ups_d_c_in_axes2_zz = (
+        ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
+            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
+            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy))
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        ups_Q_t = 0.5*ups_d_c_yy
-        ups_Q_t_2 = 0.5*ups_d_c_zz
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t
+        axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z - axis_z_ups_axes2_z*ups_w_3_y
+        axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x - axis_z_ups_axes2_x*ups_w_3_z
+        axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y - axis_z_ups_axes2_y*ups_w_3_x
+        ups_Q_t = 0.5*ups_d_c_in_axes2_yy
+        ups_Q_t_2 = 0.5*ups_d_c_in_axes2_zz
         ups_Q_t_3 = (
-        axis_y_ups_axes2_x*ups_Q_t + axis_z_ups_axes2_in_base_x*ups_d_c_yz -
-            ups_axis_x_x*ups_d_phi_3_t
+        ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz
         )
         ups_Q_t_4 = (
-        axis_y_ups_axes2_y*ups_Q_t + axis_z_ups_axes2_in_base_y*ups_d_c_yz -
-            ups_axis_x_y*ups_d_phi_3_t
+        ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz
         )
         ups_Q_t_5 = (
-        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_in_base_z*ups_d_c_yz -
-            ups_axis_x_z*ups_d_phi_3_t
+        axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            ups_d_phi_3_in_axes2_xy*ups_w_3_z
         )
-        ups_Q_t_6 = axis_z_ups_axes2_in_base_x*ups_Q_t_2 + ups_axis_x_x*ups_d_phi_3_t_2
-        ups_Q_t_7 = axis_z_ups_axes2_in_base_y*ups_Q_t_2 + ups_axis_x_y*ups_d_phi_3_t_2
-        ups_Q_t_8 = axis_z_ups_axes2_in_base_z*ups_Q_t_2 + ups_axis_x_z*ups_d_phi_3_t_2
-        ups_Q_t_9 = axis_y_ups_axes2_x*ups_Q_t_3 + axis_z_ups_axes2_in_base_x*ups_Q_t_6
-        ups_Q_t_10 = 2.0*ups_Q_t_9
-        ups_Q_t_11 = (
-        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_7 + axis_z_ups_axes2_in_base_y*ups_Q_t_6
+        ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x
+        ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y
+        ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z
+        ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3
+        ups_Q_xx = -2.0*ups_Q_t_9
+        ups_Q_xy = (
+        axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 - axis_z_ups_axes2_x*ups_Q_t_7
+            - axis_z_ups_axes2_y*ups_Q_t_6
         )
-        ups_Q_t_12 = (
-        axis_y_ups_axes2_x*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_3 +
-            axis_z_ups_axes2_in_base_x*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_6
+        ups_Q_xz = (
+        axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 - axis_z_ups_axes2_x*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_6
         )
-        ups_Q_t_13 = axis_y_ups_axes2_y*ups_Q_t_4 + axis_z_ups_axes2_in_base_y*ups_Q_t_7
-        ups_Q_t_14 = 2.0*ups_Q_t_13
-        ups_Q_t_15 = (
-        axis_y_ups_axes2_y*ups_Q_t_5 + axis_y_ups_axes2_z*ups_Q_t_4 +
-            axis_z_ups_axes2_in_base_y*ups_Q_t_8 + axis_z_ups_axes2_in_base_z*ups_Q_t_7
+        ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4
+        ups_Q_yy = -2.0*ups_Q_t_10
+        ups_Q_yz = (
+        axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 - axis_z_ups_axes2_y*ups_Q_t_8
+            - axis_z_ups_axes2_z*ups_Q_t_7
         )
-        ups_Q_t_16 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_in_base_z*ups_Q_t_8
-        ups_Q_t_17 = 2.0*ups_Q_t_16
+        ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8
+        ups_Q_zz = -2.0*ups_Q_t_11
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ups_Q_t_10, ups_Q_t_11, ups_Q_t_12, ups_Q_t_14, ups_Q_t_15, ups_Q_t_17,
+        ups_Q_xx, ups_Q_xy, ups_Q_xz, ups_Q_yy, ups_Q_yz, ups_Q_zz,
         ))
-    total_ups_xx, total_ups_xy, total_ups_xz, total_ups_yy, total_ups_yz, total_ups_zz = sums
+    M_tt_ups_xx, M_tt_xy, M_tt_xz, M_tt_ups_yy, M_tt_yz, M_tt_ups_zz = sums
     # (M_tt) translational block of M
-    M_tt_xx = m_star - total_ups_xx
-    M_tt_yy = m_star - total_ups_yy
-    M_tt_zz = m_star - total_ups_zz
+    M_tt_xx = M_tt_ups_xx + m_star
+    M_tt_yy = M_tt_ups_yy + m_star
+    M_tt_zz = M_tt_ups_zz + m_star
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = -total_ups_xy
-    out_M[3] = -total_ups_xy
-    out_M[2] = -total_ups_xz
-    out_M[6] = -total_ups_xz
+    out_M[1] = M_tt_xy
+    out_M[3] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[6] = M_tt_xz
     out_M[4] = M_tt_yy
-    out_M[5] = -total_ups_yz
-    out_M[7] = -total_ups_yz
+    out_M[5] = M_tt_yz
+    out_M[7] = M_tt_yz
     out_M[8] = M_tt_zz
     return ok, (out_M,)
 
@@ -1592,13 +1613,15 @@ def _run_Z(m, X, V):
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_h_group_2_x, ups_h_group_2_y, ups_h_group_2_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_3_in_spec2_x,
+            ups_h_3_in_spec2_y, ups_h_3_in_spec2_z, ups_h_group_2_in_axes2_x,
+            ups_h_group_2_in_axes2_y, ups_h_group_2_in_axes2_z, ups_platform_point_x,
+            ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
@@ -1616,129 +1639,137 @@ def _run_Z(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1_t = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
+            axis_z_ups_axes2_z*t_dot_z)
+        )
+        # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
         )
         axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
         )
         axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
-        # (ups-S_dot) velocity of the connection point
-        ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y + t_dot_z*ups_axis_x_z
-        # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
             axis_y_ups_axes2_z*t_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x + axis_z_ups_axes2_in_base_y*t_dot_y +
-            axis_z_ups_axes2_in_base_z*t_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        ups_qdd_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2
-        ups_qdd_1_o = inv_ups_root_1*ups_bias_z
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
+        )
+        # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_t = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_t_2 = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_t = ups_qdd_1_o_t*ups_s_2
+        ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o_t
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        ups_alpha_2_o_x = -ups_alpha_1_o_t - ups_zeta_2_x
-        ups_alpha_2_o_y = ups_alpha_1_o_t_2 - ups_zeta_2_y
+        ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t
+        ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2_o) remainder of the acceleration tensor of link 2
-        ups_B_2_o_xy = ups_qdd_2_o_t - 2.0*ups_W_2_xy
-        ups_B_2_o_zx = ups_zeta_2_y - ups_alpha_2_o_y
-        ups_B_2_o_zy = ups_alpha_2_o_x - ups_zeta_2_x
+        ups_B_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2
+        ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2.0*ups_W_2_in_axes2_xy
+        ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
+        ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_phi_3_o_x = (
-        ups_alpha_1_o_t_2*ups_h_3_y - ups_B_2_o_xy*ups_h_3_z - ups_h_3_x*(ups_W_2_t_2 +
-            ups_W_2_t_3)
+        ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_o_in_axes2_x = (
+        ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_o_t -
+            ups_phi_3_o_t_2) - ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z
         )
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
         # (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_o_x = (
-        ups_B_2_o_zy*ups_Sigma_2_yy + ups_J_group_2_yz*(ups_W_2_t_2 - ups_W_2_t_3) +
-            ups_g_r3_y*ups_h_group_2_z - ups_B_2_o_zx*ups_J_group_2_xy -
-            ups_J_group_2_xz*ups_qdd_2_o_t - ups_Sigma_2_zz*ups_alpha_1_o_t -
-            ups_g_r1_x*ups_h_group_2_y
+        ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t
+        ups_mu_2_o_t_2 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_c_2*ups_mu_2_o_t_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_mu_2_o_t_2*ups_s_2
+        ups_mu_2_o_in_axes2_x = (
+        ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t -
+            ups_phi_3_o_t_2) + ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
+            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
+            ups_g_in_axes2_z*ups_h_group_2_in_axes2_y
         )
-        ups_mu_2_o_y = (
-        ups_B_2_o_zy*ups_J_group_2_xy + ups_Sigma_2_zz*ups_alpha_1_o_t_2 +
-            ups_g_r1_x*ups_h_group_2_x - ups_B_2_o_xy*ups_J_group_2_yz -
-            ups_B_2_o_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t - ups_W_2_t_3) -
-            ups_g_r3_x*ups_h_group_2_z
+        ups_mu_2_o_in_axes2_y = (
+        ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+            ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
+            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+            ups_g_in_axes2_x*ups_h_group_2_in_axes2_z
         )
-        ups_mu_2_o_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_yz*ups_alpha_1_o_t_2 +
-            ups_g_r3_x*ups_h_group_2_y - ups_B_2_o_xy*ups_Sigma_2_yy -
-            ups_J_group_2_xz*ups_alpha_1_o_t - ups_Sigma_2_xx*ups_qdd_2_o_t -
-            ups_g_r3_y*ups_h_group_2_x
+        ups_mu_2_o_in_axes2_z = (
+        ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+            ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
+            ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_c_o_y = (
-        ups_h_3_x*ups_qdd_2_o_t - inv_ups_root_2*ups_mu_2_o_z - ups_alpha_1_o_t*ups_h_3_y -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_o_in_axes2_y = (
+        ups_B_2_o_t*ups_h_3_in_spec2_x - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+            ups_alpha_1_o_t*ups_h_3_in_spec2_y - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
+            ups_phi_3_o_t_2)
         )
-        ups_c_o_z = (
-        ups_B_2_o_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_o_x*ups_s_2 - ups_c_2*ups_mu_2_o_y) - ups_B_2_o_zx*ups_h_3_x
+        ups_c_o_in_axes2_z = (
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
+            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-U) velocity and gravity terms of the leg force
-        ups_U_in_base_x = (
-        ups_axis_x_x*ups_phi_3_o_x - axis_y_ups_axes2_x*ups_c_o_y -
-            axis_z_ups_axes2_in_base_x*ups_c_o_z
+        ups_U_x = (
+        axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_x*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_x*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_y = (
-        ups_axis_x_y*ups_phi_3_o_x - axis_y_ups_axes2_y*ups_c_o_y -
-            axis_z_ups_axes2_in_base_y*ups_c_o_z
+        ups_U_y = (
+        axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_y*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_y*ups_c_o_in_axes2_z
         )
-        ups_U_in_base_z = (
-        ups_axis_x_z*ups_phi_3_o_x - axis_y_ups_axes2_z*ups_c_o_y -
-            axis_z_ups_axes2_in_base_z*ups_c_o_z
+        ups_U_z = (
+        axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x - axis_y_ups_axes2_z*ups_c_o_in_axes2_y -
+            axis_z_ups_axes2_z*ups_c_o_in_axes2_z
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
@@ -1746,13 +1777,14 @@ def _run_Z(m, X, V):
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ups_U_in_base_x, ups_U_in_base_y, ups_U_in_base_z,
+        ups_U_x, ups_U_y, ups_U_z,
         ))
-    total_ups_x, total_ups_y, total_ups_z = sums
+    Z_t_ups_x, Z_t_ups_y, Z_t_ups_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = total_ups_x - Z_p_x
-    Z_t_y = total_ups_y - Z_p_y
-    Z_t_z = total_ups_z - Z_p_z
+    Z_t_x = Z_p_x + Z_t_ups_x
+    Z_t_y = Z_p_y + Z_t_ups_y
+    Z_t_z = Z_p_z + Z_t_ups_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
@@ -1794,27 +1826,28 @@ def _run_H(m, X):
         # (ups-rho2_1) squared amplitude
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
+        # (ups-w_2) reciprocal vector 2
+        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
+        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
+        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_2) >
             _TOLERANCE * 0.8))
         )
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = ups_w_3_x
+        out_H[_H_ups[1][leg]] = ups_w_3_y
+        out_H[_H_ups[2][leg]] = ups_w_3_z
     return ok, (out_H,)
 
 
@@ -1858,13 +1891,14 @@ def _run_required(m, X, V, A):
     sums = [0.0] * 3
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
@@ -1882,142 +1916,156 @@ def _run_required(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1_t = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
+            axis_z_ups_axes2_z*t_dot_z)
+        )
+        # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
         )
         axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
         )
         axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
-        # (ups-S_dot) velocity of the connection point
-        ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y + t_dot_z*ups_axis_x_z
-        # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
             axis_y_ups_axes2_z*t_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x + axis_z_ups_axes2_in_base_y*t_dot_y +
-            axis_z_ups_axes2_in_base_z*t_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-S_ddot) acceleration of the connection point
-        ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x
-        ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y
-        ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z
-        ups_S_ddot_tip_z = (
-        axis_z_ups_axes2_in_base_x*t_ddot_x + axis_z_ups_axes2_in_base_y*t_ddot_y +
-            axis_z_ups_axes2_in_base_z*t_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z
+        )
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
-        ups_qdd_1_t = (
-        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_x = (
-        t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y + t_ddot_z*ups_axis_x_z - ups_g_r3_x
-        )
-        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
-        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_t = ups_qdd_1*ups_s_2
-        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
+        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
-        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
-        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
+        ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
-        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
-        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        ups_B_2_t = axis_y_ups_axes2_x*t_ddot_x
+        ups_B_2_t_2 = axis_y_ups_axes2_y*t_ddot_y
+        ups_B_2_t_3 = axis_y_ups_axes2_z*t_ddot_z
+        ups_B_2_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        )
+        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
+        ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t
+        ups_acc_3_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_acc_3_t_4*ups_s_2
+        ups_acc_3_in_axes2_x = (
+        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z -
+            ups_g_in_axes2_x
+        )
+        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-phi_3) inertia force of link 3 from its turning about its reference point
-        ups_phi_3_x = (
-        -ups_B_2_xy*ups_h_3_z - ups_alpha_1_t_2*ups_h_3_y - ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3)
+        ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_phi_3_t_2 = ups_qd_2*ups_qd_2
+        ups_phi_3_in_axes2_x = (
+        ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y + ups_h_3_in_spec2_x*(-ups_phi_3_t -
+            ups_phi_3_t_2) - ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z
         )
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_x = (
-        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
-            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
-            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
-            ups_acc_3_z*ups_h_3_z
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_in_axes2_x = (
+        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
+            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_y = (
-        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
-            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
-            ups_g_r3_x*ups_h_2_y
+        ups_mu_2_in_axes2_y = (
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
-            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
-            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
-            ups_g_r3_y*ups_h_2_x
+        ups_mu_2_in_axes2_z = (
+        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
+            ups_phi_3_t) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
+        ups_c_in_axes2_y = (
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
+            ups_phi_3_t_2)
+        )
+        ups_c_in_axes2_z = (
+        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        )
+        ups_c_x = (
+        axis_y_ups_axes2_x*ups_c_in_axes2_y + axis_z_ups_axes2_x*ups_c_in_axes2_z -
+            axis_x_ups_axes2_x*ups_phi_3_in_axes2_x
+        )
         ups_c_y = (
-        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        axis_y_ups_axes2_y*ups_c_in_axes2_y + axis_z_ups_axes2_y*ups_c_in_axes2_z -
+            axis_x_ups_axes2_y*ups_phi_3_in_axes2_x
         )
         ups_c_z = (
-        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
-        )
-        ups_c_in_base_x = (
-        axis_y_ups_axes2_x*ups_c_y + axis_z_ups_axes2_in_base_x*ups_c_z - ups_axis_x_x*ups_phi_3_x
-        )
-        ups_c_in_base_y = (
-        axis_y_ups_axes2_y*ups_c_y + axis_z_ups_axes2_in_base_y*ups_c_z - ups_axis_x_y*ups_phi_3_x
-        )
-        ups_c_in_base_z = (
-        axis_y_ups_axes2_z*ups_c_y + axis_z_ups_axes2_in_base_z*ups_c_z - ups_axis_x_z*ups_phi_3_x
+        axis_y_ups_axes2_z*ups_c_in_axes2_y + axis_z_ups_axes2_z*ups_c_in_axes2_z -
+            axis_x_ups_axes2_z*ups_phi_3_in_axes2_x
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
@@ -2025,16 +2073,18 @@ def _run_required(m, X, V, A):
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        ups_c_in_base_x, ups_c_in_base_y, ups_c_in_base_z,
+        ups_c_x, ups_c_y, ups_c_z,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
-    total_ups_x, total_ups_y, total_ups_z = sums
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = axis_x_ups_axes2_x
+        out_H[_H_ups[1][leg]] = axis_x_ups_axes2_y
+        out_H[_H_ups[2][leg]] = axis_x_ups_axes2_z
+    R_t_t, R_t_t_2, R_t_t_3 = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_ups_x
-    R_t_y = f_p_y - total_ups_y
-    R_t_z = f_p_z - total_ups_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
@@ -2078,28 +2128,29 @@ def _run_inverse_kinematics(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-q_1) displacement of joint 1
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        # (ups-q_1) displacement of joint 1
-        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
         # (ups-q_2) displacement of joint 2
-        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_t, inv_ups_root_2*ups_root_1)
+        inv_ups_root_2 = 1.0/ups_root_2
+        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_in_axes1_z, inv_ups_root_2*ups_root_1)
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
+        # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
+        # (ups-q_2) displacement of joint 2
         out_q[_q_ups[1][leg]] = ups_q_2
+        # (ups-q_3) displacement of joint 3
         out_q[_q_ups[2][leg]] = ups_root_2
     return ok, (out_q,)
 
@@ -2147,52 +2198,55 @@ def _run_joint_rates(m, X, V):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1_t = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
         # (ups-S_dot) velocity of the connection point
-        ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y + t_dot_z*ups_axis_x_z
+        inv_ups_root_2 = 1.0/ups_root_2
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
+            axis_z_ups_axes2_z*t_dot_z)
+        )
         # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
-        inv_ups_root_2*(t_dot_x*(axis_z_ups_axes2_in_base_y*ups_axis_x_z -
-            axis_z_ups_axes2_in_base_z*ups_axis_x_y) +
-            t_dot_y*(axis_z_ups_axes2_in_base_z*ups_axis_x_x -
-            axis_z_ups_axes2_in_base_x*ups_axis_x_z) +
-            t_dot_z*(axis_z_ups_axes2_in_base_x*ups_axis_x_y -
-            axis_z_ups_axes2_in_base_y*ups_axis_x_x))
-        )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x + axis_z_ups_axes2_in_base_y*t_dot_y +
-            axis_z_ups_axes2_in_base_z*t_dot_z)
+        inv_ups_root_2*(t_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
+            t_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
+            t_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+            axis_x_ups_axes2_x*axis_z_ups_axes2_y))
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
+        # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
+        # (ups-qd_2) rate of joint 2
         out_qd[_qd_ups[1][leg]] = ups_qd_2
-        out_qd[_qd_ups[2][leg]] = ups_S_dot_tip_x
+        # (ups-qd_3) rate of joint 3
+        out_qd[_qd_ups[2][leg]] = ups_S_dot_in_axes2_x
     return ok, (out_qd,)
 
 
@@ -2246,78 +2300,85 @@ def _run_joint_accelerations(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1_t = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
+        # (ups-S_dot) velocity of the connection point
         inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
+            axis_z_ups_axes2_z*t_dot_z)
+        )
+        # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
         )
         axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
         )
         axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
-        # (ups-S_dot) velocity of the connection point
-        ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y + t_dot_z*ups_axis_x_z
-        # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
             axis_y_ups_axes2_z*t_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x + axis_z_ups_axes2_in_base_y*t_dot_y +
-            axis_z_ups_axes2_in_base_z*t_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = inv_ups_root_2*ups_qd_1*ups_xi_1_t
-        ups_omega_1_t_2 = inv_ups_root_2*ups_qd_1*ups_root_1
+        ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z
+        ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1
         # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_omega_1_t*ups_qd_2*ups_root_2
-        # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_x = (
-        t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y + t_ddot_z*ups_axis_x_z +
-            ups_root_2*(ups_omega_1_t_2*ups_omega_1_t_2 + ups_qd_2*ups_qd_2)
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
-        ups_rel_z = (
-        axis_z_ups_axes2_in_base_x*t_ddot_x + axis_z_ups_axes2_in_base_y*t_ddot_y +
-            axis_z_ups_axes2_in_base_z*t_ddot_z - ups_bias_z
+        # (ups-rel) acceleration of the connection point left to the joint accelerations
+        ups_rel_in_axes2_x = (
+        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z -
+            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
+        )
+        ups_rel_in_axes2_z = (
+        axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z -
+            ups_bias_in_axes2_z
         )
         # (ups-qdd_1) acceleration of joint 1
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
+        # (ups-qdd_2) acceleration of joint 2
         ups_qdd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*t_ddot_x + axis_y_ups_axes2_y*t_ddot_y +
-            axis_y_ups_axes2_z*t_ddot_z - ups_bias_t*ups_qd_2) + ups_omega_1_t*ups_omega_1_t_2
+            axis_y_ups_axes2_z*t_ddot_z - ups_bias_t*ups_qd_2) -
+            ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
+        # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
+        # (ups-qdd_2) acceleration of joint 2
         out_qdd[_qdd_ups[1][leg]] = ups_qdd_2
-        out_qdd[_qdd_ups[2][leg]] = ups_rel_x
+        # (ups-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_ups[2][leg]] = ups_rel_in_axes2_x
     return ok, (out_qdd,)
 
 
@@ -2351,13 +2412,15 @@ def _run_legs(m, X, V, A):
     out_drive = m.zeros("drive")
     for leg, k in legs[0]:
         (
-        ups_J_group_2_xy, ups_J_group_2_xz, ups_J_group_2_yz, ups_Sigma_2_xx, ups_Sigma_2_yy,
-            ups_Sigma_2_zz, ups_base_frame_xx, ups_base_frame_xy, ups_base_frame_xz,
-            ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz, ups_base_frame_zx,
-            ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x, ups_base_point_y,
-            ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x, ups_g_r0_y, ups_g_r0_z,
-            ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y, ups_h_3_z, ups_link3_mass,
-            ups_platform_point_x, ups_platform_point_y, ups_platform_point_z,
+        ups_J_group_2_in_axes2_xy, ups_J_group_2_in_axes2_xz, ups_J_group_2_in_axes2_yz,
+            ups_Sigma_2_in_axes2_xx, ups_Sigma_2_in_axes2_yy, ups_Sigma_2_in_axes2_zz,
+            ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
+            ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
+            ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_link3_mass, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
@@ -2375,160 +2438,173 @@ def _run_legs(m, X, V, A):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1_t = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-w_1) reciprocal vector 1
-        axis_z_ups_axes2_in_base_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1
-        axis_z_ups_axes2_in_base_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1
-        axis_z_ups_axes2_in_base_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-S_dot) velocity of the connection point
+        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        ups_S_dot_in_axes2_x = (
+        axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y + axis_x_ups_axes2_z*t_dot_z
+        )
+        # (ups-qd_1) rate of joint 1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t
+        ups_qd_1 = (
+        inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x + axis_z_ups_axes2_y*t_dot_y +
+            axis_z_ups_axes2_z*t_dot_z)
+        )
+        # (ups-qd_2) rate of joint 2
         axis_y_ups_axes2_x = (
-        axis_z_ups_axes2_in_base_y*ups_axis_x_z - axis_z_ups_axes2_in_base_z*ups_axis_x_y
+        axis_x_ups_axes2_z*axis_z_ups_axes2_y - axis_x_ups_axes2_y*axis_z_ups_axes2_z
         )
         axis_y_ups_axes2_y = (
-        axis_z_ups_axes2_in_base_z*ups_axis_x_x - axis_z_ups_axes2_in_base_x*ups_axis_x_z
+        axis_x_ups_axes2_x*axis_z_ups_axes2_z - axis_x_ups_axes2_z*axis_z_ups_axes2_x
         )
         axis_y_ups_axes2_z = (
-        axis_z_ups_axes2_in_base_x*ups_axis_x_y - axis_z_ups_axes2_in_base_y*ups_axis_x_x
+        axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
-        # (ups-S_dot) velocity of the connection point
-        ups_S_dot_tip_x = t_dot_x*ups_axis_x_x + t_dot_y*ups_axis_x_y + t_dot_z*ups_axis_x_z
-        # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
         inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x + axis_y_ups_axes2_y*t_dot_y +
             axis_y_ups_axes2_z*t_dot_z)
         )
-        ups_qd_1 = (
-        inv_ups_root_1*(axis_z_ups_axes2_in_base_x*t_dot_x + axis_z_ups_axes2_in_base_y*t_dot_y +
-            axis_z_ups_axes2_in_base_z*t_dot_z)
-        )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_t = ups_qd_1*ups_s_2
-        ups_omega_1_t_2 = ups_c_2*ups_qd_1
-        # (ups-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        ups_zeta_2_x = ups_omega_1_t_2*ups_qd_2
-        ups_zeta_2_y = ups_omega_1_t*ups_qd_2
+        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
+        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
-        ups_W_2_t = ups_omega_1_t*ups_omega_1_t
-        ups_W_2_t_2 = ups_omega_1_t_2*ups_omega_1_t_2
-        ups_W_2_t_3 = ups_qd_2*ups_qd_2
-        ups_W_2_xy = ups_omega_1_t*ups_omega_1_t_2
-        # (ups-bias) acceleration of the connection point at zero joint accelerations
-        ups_bias_t = 2.0*ups_S_dot_tip_x
-        ups_bias_z = ups_bias_t*ups_omega_1_t_2 + 2.0*ups_root_2*ups_zeta_2_y
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_x = ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
-        ups_g_r3_x = ups_g_r0_z*ups_s_2 - ups_c_2*ups_g_r1_y
-        ups_g_r3_y = -ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2
+        ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
+        ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
+        ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         # (ups-S_ddot) acceleration of the connection point
-        ups_S_ddot_t = axis_y_ups_axes2_x*t_ddot_x
-        ups_S_ddot_t_2 = axis_y_ups_axes2_y*t_ddot_y
-        ups_S_ddot_t_3 = axis_y_ups_axes2_z*t_ddot_z
-        ups_S_ddot_tip_z = (
-        axis_z_ups_axes2_in_base_x*t_ddot_x + axis_z_ups_axes2_in_base_y*t_ddot_y +
-            axis_z_ups_axes2_in_base_z*t_ddot_z
+        ups_S_ddot_in_axes2_z = (
+        axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z
+        )
+        # (ups-bias) acceleration of the connection point at zero joint accelerations
+        ups_bias_t = 2.0*ups_S_dot_in_axes2_x
+        ups_bias_in_axes2_z = (
+        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel) acceleration of the connection point left to the joint accelerations
-        ups_rel_z = ups_S_ddot_tip_z - ups_bias_z
+        ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
-        ups_qdd_1_t = (
-        inv_ups_root_2*(ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_bias_t*ups_qd_2)
-        )
-        ups_qdd_1 = inv_ups_root_1*ups_rel_z
-        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_acc_3_x = (
-        t_ddot_x*ups_axis_x_x + t_ddot_y*ups_axis_x_y + t_ddot_z*ups_axis_x_z - ups_g_r3_x
-        )
-        ups_acc_3_y = ups_S_ddot_t + ups_S_ddot_t_2 + ups_S_ddot_t_3 - ups_g_r3_y
-        ups_acc_3_z = ups_S_ddot_tip_z - ups_g_r1_x
+        ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_t = ups_qdd_1*ups_s_2
-        ups_alpha_1_t_2 = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
+        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
-        ups_alpha_2_x = ups_alpha_1_t - ups_zeta_2_x
-        ups_alpha_2_y = -ups_alpha_1_t_2 - ups_zeta_2_y
+        ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
+        ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
         # (ups-B_2) acceleration tensor of link 2
-        ups_B_2_xy = -2.0*ups_W_2_xy - ups_qdd_1_t
-        ups_B_2_zx = ups_zeta_2_y - ups_alpha_2_y
-        ups_B_2_zy = ups_alpha_2_x - ups_zeta_2_x
+        ups_B_2_t = axis_y_ups_axes2_x*t_ddot_x
+        ups_B_2_t_2 = axis_y_ups_axes2_y*t_ddot_y
+        ups_B_2_t_3 = axis_y_ups_axes2_z*t_ddot_z
+        ups_B_2_in_axes2_yx = (
+        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        )
+        ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
+        ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
+        ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
+        # (ups-acc_3) acceleration of the reference point of link 3, less gravity
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t
+        ups_acc_3_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_acc_3_t_4*ups_s_2
+        ups_acc_3_in_axes2_x = (
+        axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z -
+            ups_g_in_axes2_x
+        )
+        ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_g_in_axes2_y
+        ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z
         # (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        ups_mu_2_x = (
-        ups_B_2_zy*ups_Sigma_2_yy + ups_J_group_2_xz*ups_qdd_1_t + ups_J_group_2_yz*(ups_W_2_t_2 -
-            ups_W_2_t_3) + ups_Sigma_2_zz*ups_alpha_1_t + ups_g_r1_x*ups_h_2_z +
-            ups_g_r3_y*ups_h_2_y - ups_B_2_zx*ups_J_group_2_xy - ups_acc_3_y*ups_h_3_y -
-            ups_acc_3_z*ups_h_3_z
+        ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x
+        ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
+        ups_mu_2_t_3 = ups_qd_2*ups_qd_2
+        ups_mu_2_in_axes2_x = (
+        ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
+            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
+            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z
         )
-        ups_mu_2_y = (
-        ups_B_2_zy*ups_J_group_2_xy + ups_acc_3_x*ups_h_3_y + ups_g_r1_x*ups_h_2_x -
-            ups_B_2_xy*ups_J_group_2_yz - ups_B_2_zx*ups_Sigma_2_xx - ups_J_group_2_xz*(ups_W_2_t
-            - ups_W_2_t_3) - ups_Sigma_2_zz*ups_alpha_1_t_2 - ups_acc_3_z*ups_h_3_x -
-            ups_g_r3_x*ups_h_2_y
+        ups_mu_2_in_axes2_y = (
+        ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
+            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
+            ups_g_in_axes2_x*ups_h_2_in_spec2_y
         )
-        ups_mu_2_z = (
-        ups_J_group_2_xy*(ups_W_2_t - ups_W_2_t_2) + ups_J_group_2_xz*ups_alpha_1_t +
-            ups_Sigma_2_xx*ups_qdd_1_t + ups_acc_3_x*ups_h_3_z + ups_acc_3_y*ups_h_3_x -
-            ups_B_2_xy*ups_Sigma_2_yy - ups_J_group_2_yz*ups_alpha_1_t_2 - ups_g_r3_x*ups_h_2_z -
-            ups_g_r3_y*ups_h_2_x
+        ups_mu_2_in_axes2_z = (
+        ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx + ups_J_group_2_in_axes2_xy*(ups_mu_2_t -
+            ups_mu_2_t_2) + ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
+            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
+            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
+            ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
-        ups_c_y = (
-        ups_alpha_1_t*ups_h_3_y - inv_ups_root_2*ups_mu_2_z - ups_h_3_x*ups_qdd_1_t -
-            ups_h_3_z*(ups_W_2_t + ups_W_2_t_3)
+        ups_c_in_axes2_y = (
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+            ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
+            ups_mu_2_t_3)
         )
-        ups_c_z = (
-        ups_B_2_zy*ups_h_3_z + ups_h_3_y*(ups_W_2_t + ups_W_2_t_2) -
-            inv_ups_root_1*(ups_mu_2_x*ups_s_2 - ups_c_2*ups_mu_2_y) - ups_B_2_zx*ups_h_3_x
+        ups_c_in_axes2_z = (
+        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
+            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
+            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        ups_c_true_in_axes2_x = (
+        ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z - ups_acc_3_in_axes2_x*ups_link3_mass -
+            ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y - ups_h_3_in_spec2_x*(-ups_mu_2_t_2 -
+            ups_mu_2_t_3)
+        )
+        ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass
+        ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass
         ups_c_true_x = (
-        ups_B_2_xy*ups_h_3_z + ups_alpha_1_t_2*ups_h_3_y + ups_h_3_x*(ups_W_2_t_2 + ups_W_2_t_3) -
-            ups_acc_3_x*ups_link3_mass
+        axis_x_ups_axes2_x*ups_c_true_in_axes2_x + axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_x*ups_c_true_in_axes2_z
         )
-        ups_c_true_y = ups_c_y - ups_acc_3_y*ups_link3_mass
-        ups_c_true_z = ups_c_z - ups_acc_3_z*ups_link3_mass
-        ups_c_true_in_base_x = (
-        axis_y_ups_axes2_x*ups_c_true_y + axis_z_ups_axes2_in_base_x*ups_c_true_z +
-            ups_axis_x_x*ups_c_true_x
+        ups_c_true_y = (
+        axis_x_ups_axes2_y*ups_c_true_in_axes2_x + axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_y*ups_c_true_in_axes2_z
         )
-        ups_c_true_in_base_y = (
-        axis_y_ups_axes2_y*ups_c_true_y + axis_z_ups_axes2_in_base_y*ups_c_true_z +
-            ups_axis_x_y*ups_c_true_x
-        )
-        ups_c_true_in_base_z = (
-        axis_y_ups_axes2_z*ups_c_true_y + axis_z_ups_axes2_in_base_z*ups_c_true_z +
-            ups_axis_x_z*ups_c_true_x
+        ups_c_true_z = (
+        axis_x_ups_axes2_z*ups_c_true_in_axes2_x + axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+            axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
             _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8))
         )
-        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_in_base_x
-        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_in_base_y
-        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_in_base_z
-        out_drive[_drive_ups[0][leg]] = ups_axis_x_x
-        out_drive[_drive_ups[1][leg]] = ups_axis_x_y
-        out_drive[_drive_ups[2][leg]] = ups_axis_x_z
+        # (ups-c_true) leg force on the platform without actuation, the last link's mass included
+        out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
+        out_leg_force[_leg_force_ups[1][leg]] = ups_c_true_y
+        out_leg_force[_leg_force_ups[2][leg]] = ups_c_true_z
+        # (ups-w_3) reciprocal vector 3
+        out_drive[_drive_ups[0][leg]] = axis_x_ups_axes2_x
+        out_drive[_drive_ups[1][leg]] = axis_x_ups_axes2_y
+        out_drive[_drive_ups[2][leg]] = axis_x_ups_axes2_z
     return ok, (out_leg_force, out_drive,)
 
 
@@ -2554,13 +2630,13 @@ def _run_potential(m, X):
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        ups_b_r0_x, ups_b_r0_y, ups_b_r0_z, ups_base_frame_xx, ups_base_frame_xy,
+        ups_acc_3_t, ups_acc_3_t_2, ups_acc_3_t_3, ups_base_frame_xx, ups_base_frame_xy,
             ups_base_frame_xz, ups_base_frame_yx, ups_base_frame_yy, ups_base_frame_yz,
             ups_base_frame_zx, ups_base_frame_zy, ups_base_frame_zz, ups_base_point_x,
-            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_g_r0_x,
-            ups_g_r0_y, ups_g_r0_z, ups_h_2_x, ups_h_2_y, ups_h_2_z, ups_h_3_x, ups_h_3_y,
-            ups_h_3_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
-            ups_platform_point_z,
+            ups_base_point_y, ups_base_point_z, ups_branch_1, ups_branch_2, ups_h_2_in_spec2_x,
+            ups_h_2_in_spec2_y, ups_h_2_in_spec2_z, ups_h_3_in_spec2_x, ups_h_3_in_spec2_y,
+            ups_h_3_in_spec2_z, ups_link2_mass, ups_platform_point_x, ups_platform_point_y,
+            ups_platform_point_z, ups_potential_t, ups_potential_t_2, ups_potential_t_3,
         ) = k
         # (ups-S) from the base point to the connection point
         ups_S_x = t_x + ups_platform_point_x - ups_base_point_x
@@ -2578,45 +2654,48 @@ def _run_potential(m, X):
         ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1_t = inv_ups_root_1*ups_py_1
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_px_1
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
         inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = inv_ups_root_2*ups_root_1
+        ups_c_2 = -inv_ups_root_2*ups_root_1
         # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_t
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
-        ups_g_r1_y = -ups_c_1*ups_g_r0_y - ups_g_r0_x*ups_s_1
+        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
         # (potential) potential energy
-        ups_b_r1_y = -ups_b_r0_x*ups_s_1 - ups_b_r0_y*ups_c_1
-        ups_potential_t = (
-        (ups_g_r0_y*ups_s_1 - ups_c_1*ups_g_r0_x)*(ups_h_2_y + ups_h_3_y +
-            ups_link2_mass*(ups_b_r0_y*ups_s_1 - ups_b_r0_x*ups_c_1)) + (ups_g_r0_z*ups_s_2 -
-            ups_c_2*ups_g_r1_y)*(ups_h_2_x + ups_h_3_x + ups_link2_mass*(ups_b_r0_z*ups_s_2 -
-            ups_b_r1_y*ups_c_2)) - (-ups_c_2*ups_g_r0_z - ups_g_r1_y*ups_s_2)*(ups_h_2_z +
-            ups_h_3_z - ups_link2_mass*(-ups_b_r0_z*ups_c_2 - ups_b_r1_y*ups_s_2))
+        ups_potential_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t
+        ups_potential_t_5 = -ups_c_1_t*ups_potential_t_2 - ups_potential_t*ups_s_1
+        ups_potential_t_6 = (
+        (ups_acc_3_t_3*ups_c_2 + ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_c_2*ups_potential_t_3 -
+            ups_potential_t_5*ups_s_2)) - (ups_acc_3_t_2*ups_s_1 -
+            ups_acc_3_t*ups_c_1_t)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_potential_t_2*ups_s_1 - ups_c_1_t*ups_potential_t)) -
+            (ups_acc_3_t_3*ups_s_2 - ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+            ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
+            ups_potential_t_3*ups_s_2))
         )
         ok = (
         ok & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        ups_potential_t,
+        ups_potential_t_6,
         ))
-    total_ups, = sums
+    potential_ups, = sums
     # (potential) potential energy
-    potential = -potential_t - total_ups
+    potential = potential_ups - potential_t
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -2626,7 +2705,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -2641,6 +2720,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -2667,37 +2747,34 @@ def _run_condition(m, X):
         # (ups-root_1) amplitude, with the sign of the branch
         ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
         # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_t = (
+        ups_xi_1_in_axes1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
         # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_t*ups_xi_1_t
+        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
         # (ups-root_2) amplitude, with the sign of the branch
         ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        # (ups-w_1) reciprocal vector 1
-        ups_axis_x_x = inv_ups_root_2*ups_S_x
-        ups_axis_x_y = inv_ups_root_2*ups_S_y
-        ups_axis_x_z = inv_ups_root_2*ups_S_z
-        # (spread) rms distance of the platform points from their centroid
-        ups_spread_t = b_c_x - ups_platform_point_x
-        ups_spread_t_2 = b_c_y - ups_platform_point_y
-        ups_spread_t_3 = b_c_z - ups_platform_point_z
-        ups_spread_t_4 = (
-        ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
-        )
-        # (ups-rho2_1) squared amplitude
+        # (ups-w_2) reciprocal vector 2
+        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        # (ups-w_3) reciprocal vector 3
+        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
+        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
+        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         ups_pivot_size = abs(ups_rho2_1)
-        # (ups-rho2_2) squared amplitude
         ups_pivot_size_2 = abs(ups_rho2_2)
-        # (ups-w_1) reciprocal vector 1
         ups_pivot_size_3 = abs(ups_root_1)
         ups_pivot_size_4 = abs(ups_root_2)
-        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         ups_least_pivots = (
         least(least(least(1.25*sqrt(ups_pivot_size), 1.25*sqrt(ups_pivot_size_2)),
             1.25*ups_pivot_size_3), 1.25*ups_pivot_size_4)
+        )
+        # (spread) rms distance of the platform points from their centroid
+        ups_spread_t = b_c_in_platform_x - ups_platform_point_x
+        ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y
+        ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z
+        ups_spread_t_4 = (
+        ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
         clear & m.every(leg, (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
@@ -2707,13 +2784,16 @@ def _run_condition(m, X):
         sums = m.added(sums, leg, (
         ups_spread_t_4,
         ))
-        out_H[_H_ups[0][leg]] = ups_axis_x_x
-        out_H[_H_ups[1][leg]] = ups_axis_x_y
-        out_H[_H_ups[2][leg]] = ups_axis_x_z
+        # (ups-w_3) reciprocal vector 3
+        out_H[_H_ups[0][leg]] = ups_w_3_x
+        out_H[_H_ups[1][leg]] = ups_w_3_y
+        out_H[_H_ups[2][leg]] = ups_w_3_z
+        # (ups-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_ups[0][leg]] = ups_least_pivots
-    total_ups, = sums
+    spread_ups, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_ups)
+    spread = spread_t*sqrt(spread_ups)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 

@@ -486,9 +486,9 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return INVALID;
     }
-    real total_upu_x = 0;
-    real total_upu_y = 0;
-    real total_upu_z = 0;
+    real b_c_upu_in_platform_x = 0;
+    real b_c_upu_in_platform_y = 0;
+    real b_c_upu_in_platform_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -503,26 +503,29 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real platform_inertia_yz = params->platform_inertia[1][2];
     const real platform_inertia_zz = params->platform_inertia[2][2];
     /* (h_star) first moment about the platform origin */
-    const real h_star_x = platform_centre_of_mass_x*platform_mass;
-    const real h_star_y = platform_centre_of_mass_y*platform_mass;
-    const real h_star_z = platform_centre_of_mass_z*platform_mass;
+    const real h_star_in_platform_x = platform_centre_of_mass_x*platform_mass;
+    const real h_star_in_platform_y = platform_centre_of_mass_y*platform_mass;
+    const real h_star_in_platform_z = platform_centre_of_mass_z*platform_mass;
     /* (J_star) inertia tensor about the platform origin */
     const real J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y;
     const real J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z;
     const real J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3;
-    const real J_star_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4);
-    const real J_star_xy = platform_inertia_xy -
+    const real J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t -
+        J_star_t_4);
+    const real J_star_in_platform_xy = platform_inertia_xy -
         platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass;
-    const real J_star_xz = platform_inertia_xz -
+    const real J_star_in_platform_xz = platform_inertia_xz -
         platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass;
-    const real J_star_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4);
-    const real J_star_yz = platform_inertia_yz -
+    const real J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 -
+        J_star_t_4);
+    const real J_star_in_platform_yz = platform_inertia_yz -
         platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
-    const real J_star_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4);
-    const real J_star_t_5 = J_star_xx - J_star_yy;
+    const real J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 -
+        J_star_t_4);
+    const real J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy;
     const real J_star_t_6 = R(0.5)*J_star_t_5;
-    const real J_star_t_7 = J_star_xx - J_star_zz;
+    const real J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz;
     const real J_star_t_8 = R(0.5)*J_star_t_7;
     /* (Z_p) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*platform_mass;
@@ -532,23 +535,23 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real spread_t = R(0.3333333333333333)*root(3);
     /* (legs_size) rms size of the legs, taken where the platform points coincide */
     const real legs_size = R(1.385640646055102)*spread_t;
+    model->J_star_in_platform_xx = J_star_in_platform_xx;
+    model->J_star_in_platform_xy = J_star_in_platform_xy;
+    model->J_star_in_platform_xz = J_star_in_platform_xz;
+    model->J_star_in_platform_yy = J_star_in_platform_yy;
+    model->J_star_in_platform_yz = J_star_in_platform_yz;
+    model->J_star_in_platform_zz = J_star_in_platform_zz;
     model->J_star_t_6 = J_star_t_6;
     model->J_star_t_8 = J_star_t_8;
-    model->J_star_xx = J_star_xx;
-    model->J_star_xy = J_star_xy;
-    model->J_star_xz = J_star_xz;
-    model->J_star_yy = J_star_yy;
-    model->J_star_yz = J_star_yz;
-    model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
-    model->h_star_x = h_star_x;
-    model->h_star_y = h_star_y;
-    model->h_star_z = h_star_z;
+    model->h_star_in_platform_x = h_star_in_platform_x;
+    model->h_star_in_platform_y = h_star_in_platform_y;
+    model->h_star_in_platform_z = h_star_in_platform_z;
     model->legs_size = legs_size;
     model->platform_mass = platform_mass;
     model->spread_t = spread_t;
@@ -596,78 +599,76 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         const real upu_branch_1 = signs_upu_branch_1[own];
         static const signed char signs_upu_branch_2[] = {1, 1, 1};
         const real upu_branch_2 = signs_upu_branch_2[own];
+        /* (upu-h_2) first moment of link 2 about the origin of link 2 */
+        const real upu_h_2_in_spec2_x = upu_link2_centre_of_mass_x*upu_link2_mass;
+        const real upu_h_2_in_spec2_y = upu_link2_centre_of_mass_y*upu_link2_mass;
+        const real upu_h_2_in_spec2_z = upu_link2_centre_of_mass_z*upu_link2_mass;
         /* (upu-h_3) first moment of link 3 about the origin of link 3 */
-        const real upu_h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass;
-        const real upu_h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass;
-        const real upu_h_3_z = upu_link3_centre_of_mass_z*upu_link3_mass;
-        /* (upu-J_2) inertia tensor of link 2 about the origin of link 2 */
-        const real upu_J_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x;
-        const real upu_J_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y;
-        const real upu_J_2_t_3 = upu_link2_centre_of_mass_z*upu_link2_centre_of_mass_z;
-        const real upu_J_2_t_4 = upu_J_2_t + upu_J_2_t_2 + upu_J_2_t_3;
-        /* (upu-J_3) inertia tensor of link 3 about the origin of link 3 */
-        const real upu_J_3_t = upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_x;
-        const real upu_J_3_t_2 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y;
-        const real upu_J_3_t_3 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z;
-        const real upu_J_3_t_4 = upu_J_3_t + upu_J_3_t_2 + upu_J_3_t_3;
+        const real upu_h_3_in_spec2_x = upu_link3_centre_of_mass_x*upu_link3_mass;
+        const real upu_h_3_in_spec2_y = upu_link3_centre_of_mass_y*upu_link3_mass;
+        const real upu_h_3_in_spec2_z = upu_link3_centre_of_mass_z*upu_link3_mass;
+        /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
+        const real upu_acc_3_t = gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx +
+            gravity_z*upu_base_frame_zx;
+        const real upu_acc_3_t_2 = gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy +
+            gravity_z*upu_base_frame_zy;
+        const real upu_acc_3_t_3 = gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz +
+            gravity_z*upu_base_frame_zz;
         /* (upu-J_group_2) inertia of the links that turn with link 2, each about its reference point */
-        const real upu_J_group_2_xx = upu_link2_inertia_xx + upu_link3_inertia_xx -
-            upu_link2_mass*(upu_J_2_t - upu_J_2_t_4) - upu_link3_mass*(upu_J_3_t - upu_J_3_t_4);
-        const real upu_J_group_2_xy =
+        const real upu_J_group_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x;
+        const real upu_J_group_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y;
+        const real upu_J_group_2_t_3 = upu_link2_centre_of_mass_z*upu_link2_centre_of_mass_z;
+        const real upu_J_group_2_t_4 = upu_J_group_2_t + upu_J_group_2_t_2 + upu_J_group_2_t_3;
+        const real upu_J_group_2_t_5 = upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_x;
+        const real upu_J_group_2_t_6 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y;
+        const real upu_J_group_2_t_7 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z;
+        const real upu_J_group_2_t_8 = upu_J_group_2_t_5 + upu_J_group_2_t_6 + upu_J_group_2_t_7;
+        const real upu_J_group_2_in_axes2_xx = upu_link2_inertia_xx + upu_link3_inertia_xx -
+            upu_link2_mass*(upu_J_group_2_t - upu_J_group_2_t_4) -
+            upu_link3_mass*(upu_J_group_2_t_5 - upu_J_group_2_t_8);
+        const real upu_J_group_2_in_axes2_xy =
             upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_z*upu_link2_mass +
             upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_z*upu_link3_mass -
             upu_link2_inertia_xz - upu_link3_inertia_xz;
-        const real upu_J_group_2_xz = upu_link2_inertia_xy + upu_link3_inertia_xy -
+        const real upu_J_group_2_in_axes2_xz = upu_link2_inertia_xy + upu_link3_inertia_xy -
             upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_y*upu_link2_mass -
             upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_y*upu_link3_mass;
-        const real upu_J_group_2_yy = upu_link2_inertia_zz + upu_link3_inertia_zz -
-            upu_link2_mass*(upu_J_2_t_3 - upu_J_2_t_4) - upu_link3_mass*(upu_J_3_t_3 -
-            upu_J_3_t_4);
-        const real upu_J_group_2_yz =
+        const real upu_J_group_2_in_axes2_yy = upu_link2_inertia_zz + upu_link3_inertia_zz -
+            upu_link2_mass*(upu_J_group_2_t_3 - upu_J_group_2_t_4) -
+            upu_link3_mass*(upu_J_group_2_t_7 - upu_J_group_2_t_8);
+        const real upu_J_group_2_in_axes2_yz =
             upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_z*upu_link2_mass +
             upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_z*upu_link3_mass -
             upu_link2_inertia_yz - upu_link3_inertia_yz;
-        const real upu_J_group_2_zz = upu_link2_inertia_yy + upu_link3_inertia_yy -
-            upu_link2_mass*(upu_J_2_t_2 - upu_J_2_t_4) - upu_link3_mass*(upu_J_3_t_2 -
-            upu_J_3_t_4);
-        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real upu_g_r0_x = gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx +
-            gravity_z*upu_base_frame_zx;
-        const real upu_g_r0_y = gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy +
-            gravity_z*upu_base_frame_zy;
-        const real upu_g_r0_z = gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz +
-            gravity_z*upu_base_frame_zz;
-        /* (upu-h_2) first moment of link 2 about the origin of link 2 */
-        const real upu_h_2_x = upu_link2_centre_of_mass_x*upu_link2_mass;
-        const real upu_h_2_y = upu_link2_centre_of_mass_y*upu_link2_mass;
-        const real upu_h_2_z = upu_link2_centre_of_mass_z*upu_link2_mass;
+        const real upu_J_group_2_in_axes2_zz = upu_link2_inertia_yy + upu_link3_inertia_yy -
+            upu_link2_mass*(upu_J_group_2_t_2 - upu_J_group_2_t_4) -
+            upu_link3_mass*(upu_J_group_2_t_6 - upu_J_group_2_t_8);
         /* (upu-trace_J_2) half the trace of that inertia tensor */
-        const real upu_trace_J_2 = R(0.5)*upu_J_group_2_xx + R(0.5)*upu_J_group_2_yy +
-            R(0.5)*upu_J_group_2_zz;
+        const real upu_trace_J_2 = R(0.5)*upu_J_group_2_in_axes2_xx +
+            R(0.5)*upu_J_group_2_in_axes2_yy + R(0.5)*upu_J_group_2_in_axes2_zz;
         /* (upu-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real upu_Sigma_2_xx = upu_trace_J_2 - upu_J_group_2_xx;
-        const real upu_Sigma_2_yy = upu_trace_J_2 - upu_J_group_2_yy;
-        const real upu_Sigma_2_zz = upu_trace_J_2 - upu_J_group_2_zz;
+        const real upu_Sigma_2_in_axes2_xx = upu_trace_J_2 - upu_J_group_2_in_axes2_xx;
+        const real upu_Sigma_2_in_axes2_yy = upu_trace_J_2 - upu_J_group_2_in_axes2_yy;
+        const real upu_Sigma_2_in_axes2_zz = upu_trace_J_2 - upu_J_group_2_in_axes2_zz;
         /* (potential) potential energy */
-        const real upu_b_r0_x = upu_base_frame_xx*upu_base_point_x +
+        const real upu_potential_t = upu_base_frame_xx*upu_base_point_x +
             upu_base_frame_yx*upu_base_point_y + upu_base_frame_zx*upu_base_point_z;
-        const real upu_b_r0_y = upu_base_frame_xy*upu_base_point_x +
+        const real upu_potential_t_2 = upu_base_frame_xy*upu_base_point_x +
             upu_base_frame_yy*upu_base_point_y + upu_base_frame_zy*upu_base_point_z;
-        const real upu_b_r0_z = upu_base_frame_xz*upu_base_point_x +
+        const real upu_potential_t_3 = upu_base_frame_xz*upu_base_point_x +
             upu_base_frame_yz*upu_base_point_y + upu_base_frame_zz*upu_base_point_z;
-        model->upu_J_group_2_xx[leg] = upu_J_group_2_xx;
-        model->upu_J_group_2_xy[leg] = upu_J_group_2_xy;
-        model->upu_J_group_2_xz[leg] = upu_J_group_2_xz;
-        model->upu_J_group_2_yy[leg] = upu_J_group_2_yy;
-        model->upu_J_group_2_yz[leg] = upu_J_group_2_yz;
-        model->upu_J_group_2_zz[leg] = upu_J_group_2_zz;
-        model->upu_Sigma_2_xx[leg] = upu_Sigma_2_xx;
-        model->upu_Sigma_2_yy[leg] = upu_Sigma_2_yy;
-        model->upu_Sigma_2_zz[leg] = upu_Sigma_2_zz;
-        model->upu_b_r0_x[leg] = upu_b_r0_x;
-        model->upu_b_r0_y[leg] = upu_b_r0_y;
-        model->upu_b_r0_z[leg] = upu_b_r0_z;
+        model->upu_J_group_2_in_axes2_xx[leg] = upu_J_group_2_in_axes2_xx;
+        model->upu_J_group_2_in_axes2_xy[leg] = upu_J_group_2_in_axes2_xy;
+        model->upu_J_group_2_in_axes2_xz[leg] = upu_J_group_2_in_axes2_xz;
+        model->upu_J_group_2_in_axes2_yy[leg] = upu_J_group_2_in_axes2_yy;
+        model->upu_J_group_2_in_axes2_yz[leg] = upu_J_group_2_in_axes2_yz;
+        model->upu_J_group_2_in_axes2_zz[leg] = upu_J_group_2_in_axes2_zz;
+        model->upu_Sigma_2_in_axes2_xx[leg] = upu_Sigma_2_in_axes2_xx;
+        model->upu_Sigma_2_in_axes2_yy[leg] = upu_Sigma_2_in_axes2_yy;
+        model->upu_Sigma_2_in_axes2_zz[leg] = upu_Sigma_2_in_axes2_zz;
+        model->upu_acc_3_t[leg] = upu_acc_3_t;
+        model->upu_acc_3_t_2[leg] = upu_acc_3_t_2;
+        model->upu_acc_3_t_3[leg] = upu_acc_3_t_3;
         model->upu_base_frame_xx[leg] = upu_base_frame_xx;
         model->upu_base_frame_xy[leg] = upu_base_frame_xy;
         model->upu_base_frame_xz[leg] = upu_base_frame_xz;
@@ -682,15 +683,12 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->upu_base_point_z[leg] = upu_base_point_z;
         model->upu_branch_1[leg] = upu_branch_1;
         model->upu_branch_2[leg] = upu_branch_2;
-        model->upu_g_r0_x[leg] = upu_g_r0_x;
-        model->upu_g_r0_y[leg] = upu_g_r0_y;
-        model->upu_g_r0_z[leg] = upu_g_r0_z;
-        model->upu_h_2_x[leg] = upu_h_2_x;
-        model->upu_h_2_y[leg] = upu_h_2_y;
-        model->upu_h_2_z[leg] = upu_h_2_z;
-        model->upu_h_3_x[leg] = upu_h_3_x;
-        model->upu_h_3_y[leg] = upu_h_3_y;
-        model->upu_h_3_z[leg] = upu_h_3_z;
+        model->upu_h_2_in_spec2_x[leg] = upu_h_2_in_spec2_x;
+        model->upu_h_2_in_spec2_y[leg] = upu_h_2_in_spec2_y;
+        model->upu_h_2_in_spec2_z[leg] = upu_h_2_in_spec2_z;
+        model->upu_h_3_in_spec2_x[leg] = upu_h_3_in_spec2_x;
+        model->upu_h_3_in_spec2_y[leg] = upu_h_3_in_spec2_y;
+        model->upu_h_3_in_spec2_z[leg] = upu_h_3_in_spec2_z;
         model->upu_link2_mass[leg] = upu_link2_mass;
         model->upu_link3_mass[leg] = upu_link3_mass;
         model->upu_platform_joint_axis_platform_x[leg] = upu_platform_joint_axis_platform_x;
@@ -699,17 +697,20 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->upu_platform_point_x[leg] = upu_platform_point_x;
         model->upu_platform_point_y[leg] = upu_platform_point_y;
         model->upu_platform_point_z[leg] = upu_platform_point_z;
-        total_upu_x += leg < 3 ? upu_platform_point_x : 0;
-        total_upu_y += leg < 3 ? upu_platform_point_y : 0;
-        total_upu_z += leg < 3 ? upu_platform_point_z : 0;
+        model->upu_potential_t[leg] = upu_potential_t;
+        model->upu_potential_t_2[leg] = upu_potential_t_2;
+        model->upu_potential_t_3[leg] = upu_potential_t_3;
+        b_c_upu_in_platform_x += leg < 3 ? upu_platform_point_x : 0;
+        b_c_upu_in_platform_y += leg < 3 ? upu_platform_point_y : 0;
+        b_c_upu_in_platform_z += leg < 3 ? upu_platform_point_z : 0;
     }
     /* (b_c) centroid of the platform points */
-    const real b_c_x = R(0.3333333333333333)*total_upu_x;
-    const real b_c_y = R(0.3333333333333333)*total_upu_y;
-    const real b_c_z = R(0.3333333333333333)*total_upu_z;
-    model->b_c_x = b_c_x;
-    model->b_c_y = b_c_y;
-    model->b_c_z = b_c_z;
+    const real b_c_in_platform_x = R(0.3333333333333333)*b_c_upu_in_platform_x;
+    const real b_c_in_platform_y = R(0.3333333333333333)*b_c_upu_in_platform_y;
+    const real b_c_in_platform_z = R(0.3333333333333333)*b_c_upu_in_platform_z;
+    model->b_c_in_platform_x = b_c_in_platform_x;
+    model->b_c_in_platform_y = b_c_in_platform_y;
+    model->b_c_in_platform_z = b_c_in_platform_z;
     return OK;
 }
 
@@ -1401,41 +1402,47 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_6*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_6*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_6*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
-        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_7*R_xz;
-        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_7*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -1446,26 +1453,35 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -1484,21 +1500,21 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s[15*w + k] = omega_x;
         s[16*w + k] = omega_y;
         s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_in_base_x;
-        s[19*w + k] = h_star_in_base_y;
-        s[20*w + k] = h_star_in_base_z;
-        s[21*w + k] = J_star_t_10;
-        s[22*w + k] = J_star_t_11;
-        s[23*w + k] = J_star_t_12;
-        s[24*w + k] = J_star_t_14;
-        s[25*w + k] = J_star_t_15;
-        s[26*w + k] = J_star_t_17;
+        s[18*w + k] = h_star_x;
+        s[19*w + k] = h_star_y;
+        s[20*w + k] = h_star_z;
+        s[21*w + k] = J_star_xx;
+        s[22*w + k] = J_star_xy;
+        s[23*w + k] = J_star_xz;
+        s[24*w + k] = J_star_yy;
+        s[25*w + k] = J_star_yz;
+        s[26*w + k] = J_star_zz;
         s[27*w + k] = Z_p_x;
         s[28*w + k] = Z_p_y;
         s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_in_base_x;
-        s[31*w + k] = Z_q_in_base_y;
-        s[32*w + k] = Z_q_in_base_z;
+        s[30*w + k] = Z_q_x;
+        s[31*w + k] = Z_q_y;
+        s[32*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -1516,27 +1532,27 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -1554,517 +1570,534 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
+        /* (upu-S_dot) velocity of the connection point */
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_S_dot_t = upu_s_1*upu_s_2;
+        const real upu_S_dot_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_S_dot_t*upu_base_frame_xx +
+            upu_S_dot_t_2*upu_base_frame_xy + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_S_dot_t*upu_base_frame_yx +
+            upu_S_dot_t_2*upu_base_frame_yy + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_S_dot_t*upu_base_frame_zx +
+            upu_S_dot_t_2*upu_base_frame_zy + upu_base_frame_zz*upu_c_2;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z;
+        const real upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_5;
+        const real upu_S_dot_in_axes2_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
+        const real upu_n_m1_x = axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y;
+        const real upu_n_m1_y = axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y;
+        const real upu_n_m1_z = axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t;
+        const real upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
-        const real upu_w_1_t_4 = inv_upu_w_1_t_25*upu_n_c_z;
-        /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real upu_d_alpha_1_t = inv_upu_w_1_t_25*upu_s_2;
-        const real upu_d_alpha_1_t_2 = inv_upu_w_1_t_25*upu_c_2;
-        /* (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-           3, less gravity */
-        const real upu_d_acc_3_t = upu_d_alpha_1_t_2*upu_root_2;
-        /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real upu_h_3_z = m->upu_h_3_z[i];
-        const real upu_d_phi_3_t = inv_upu_root_2*upu_h_3_z;
-        const real upu_h_3_y = m->upu_h_3_y[i];
-        const real upu_d_phi_3_t_2 = upu_d_alpha_1_t_2*upu_h_3_y;
-        /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real upu_J_group_2_xx = m->upu_J_group_2_xx[i];
-        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
-        const real upu_J_group_2_yy = m->upu_J_group_2_yy[i];
-        const real upu_h_3_x = m->upu_h_3_x[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_d_Gamma_1_z = upu_s_2*(upu_J_group_2_xx*upu_d_alpha_1_t -
-            upu_J_group_2_xy*upu_d_alpha_1_t_2 - upu_d_acc_3_t*upu_h_3_z) -
-            upu_c_2*(upu_J_group_2_xy*upu_d_alpha_1_t - upu_J_group_2_yy*upu_d_alpha_1_t_2 -
-            upu_d_acc_3_t*upu_h_3_x - upu_root_2*(upu_d_acc_3_t*upu_link3_mass +
-            upu_d_alpha_1_t_2*upu_h_3_x - upu_d_alpha_1_t*upu_h_3_z));
-        /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
-        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
-        const real upu_d_G_t = inv_upu_root_2*(upu_J_group_2_xz*upu_d_alpha_1_t -
-            upu_J_group_2_yz*upu_d_alpha_1_t_2 - upu_d_alpha_1_t*upu_h_3_y*upu_root_2);
-        /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real upu_J_group_2_zz = m->upu_J_group_2_zz[i];
-        const real upu_Q_t = inv_upu_root_2*(upu_h_3_x + inv_upu_root_2*upu_J_group_2_zz +
-            upu_root_2*(upu_link3_mass + inv_upu_root_2*upu_h_3_x)) - upu_link3_mass;
-        const real upu_Q_t_2 = R(0.5)*upu_Q_t;
-        const real upu_Q_t_3 = inv_upu_w_1_t_25*upu_d_Gamma_1_z - upu_link3_mass;
-        const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
-        const real upu_Q_t_5 = axis_x_upu_axes2_x*upu_d_phi_3_t +
-            axis_y_upu_axes2_in_base_x*upu_Q_t_2 + axis_z_upu_axes2_in_base_x*upu_d_G_t;
-        const real upu_Q_t_6 = axis_x_upu_axes2_y*upu_d_phi_3_t +
-            axis_y_upu_axes2_in_base_y*upu_Q_t_2 + axis_z_upu_axes2_in_base_y*upu_d_G_t;
-        const real upu_Q_t_7 = axis_x_upu_axes2_z*upu_d_phi_3_t +
-            axis_y_upu_axes2_in_base_z*upu_Q_t_2 + axis_z_upu_axes2_in_base_z*upu_d_G_t;
-        const real upu_Q_t_8 = axis_z_upu_axes2_in_base_x*upu_Q_t_4 -
-            axis_x_upu_axes2_x*upu_d_phi_3_t_2;
-        const real upu_Q_t_9 = axis_z_upu_axes2_in_base_y*upu_Q_t_4 -
-            axis_x_upu_axes2_y*upu_d_phi_3_t_2;
-        const real upu_Q_t_10 = axis_z_upu_axes2_in_base_z*upu_Q_t_4 -
-            axis_x_upu_axes2_z*upu_d_phi_3_t_2;
-        const real upu_Q_t_11 = axis_y_upu_axes2_in_base_x*upu_Q_t_5 +
-            axis_z_upu_axes2_in_base_x*upu_Q_t_8;
-        const real upu_Q_t_12 = 2*upu_Q_t_11 + upu_link3_mass;
-        const real upu_Q_t_13 = axis_y_upu_axes2_in_base_x*upu_Q_t_6 +
-            axis_y_upu_axes2_in_base_y*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_9 +
-            axis_z_upu_axes2_in_base_y*upu_Q_t_8;
-        const real upu_Q_t_14 = axis_y_upu_axes2_in_base_x*upu_Q_t_7 +
-            axis_y_upu_axes2_in_base_z*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_10 +
-            axis_z_upu_axes2_in_base_z*upu_Q_t_8;
-        const real upu_Q_t_15 = axis_y_upu_axes2_in_base_y*upu_Q_t_6 +
-            axis_z_upu_axes2_in_base_y*upu_Q_t_9;
-        const real upu_Q_t_16 = 2*upu_Q_t_15 + upu_link3_mass;
-        const real upu_Q_t_17 = axis_y_upu_axes2_in_base_y*upu_Q_t_7 +
-            axis_y_upu_axes2_in_base_z*upu_Q_t_6 + axis_z_upu_axes2_in_base_y*upu_Q_t_10 +
-            axis_z_upu_axes2_in_base_z*upu_Q_t_9;
-        const real upu_Q_t_18 = axis_y_upu_axes2_in_base_z*upu_Q_t_7 +
-            axis_z_upu_axes2_in_base_z*upu_Q_t_10;
-        const real upu_Q_t_19 = 2*upu_Q_t_18 + upu_link3_mass;
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
+        const real upu_w_1_in_axes2_z = 1/upu_w_1_t;
+        /* (upu-m1_w_1) moment part 1 of reciprocal wrench 1 */
+        const real upu_m1_w_1 = upu_n_c_t*upu_w_1_in_axes2_z;
         /* (upu-o_1) moment part of reciprocal wrench 1 */
-        const real upu_o_1_x = upu_end_p1_r3_y*upu_w_1_t_4;
-        const real upu_o_1_y = upu_end_p1_r3_x*upu_w_1_t_4;
-        /* (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real upu_dalpha_alpha_1_xx = upu_o_1_x*upu_s_2;
-        const real upu_dalpha_alpha_1_xy = upu_o_1_y*upu_s_2;
-        const real upu_dalpha_alpha_1_yx = upu_c_2*upu_o_1_x;
-        const real upu_dalpha_alpha_1_yy = upu_c_2*upu_o_1_y;
-        /* (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real upu_dalpha_acc_3_t = upu_dalpha_alpha_1_yx*upu_root_2;
-        const real upu_dalpha_acc_3_t_2 = upu_dalpha_alpha_1_yy*upu_root_2;
-        /* (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real upu_dalpha_phi_3_t = upu_dalpha_alpha_1_yx*upu_h_3_y;
-        const real upu_dalpha_phi_3_t_2 = upu_dalpha_alpha_1_yy*upu_h_3_y;
-        /* (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real upu_dalpha_Gamma_1_x = upu_s_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_yx +
-            upu_dalpha_acc_3_t*upu_h_3_z - upu_J_group_2_xx*upu_dalpha_alpha_1_xx) -
-            upu_c_2*(upu_J_group_2_yy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_x -
-            upu_J_group_2_xy*upu_dalpha_alpha_1_xx - upu_root_2*(upu_dalpha_alpha_1_xx*upu_h_3_z -
-            upu_dalpha_acc_3_t*upu_link3_mass - upu_dalpha_alpha_1_yx*upu_h_3_x));
-        const real upu_dalpha_Gamma_1_y = upu_s_2*(upu_J_group_2_xx*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_xy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_z) -
-            upu_c_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_yy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_x -
-            upu_root_2*(upu_dalpha_acc_3_t_2*upu_link3_mass + upu_dalpha_alpha_1_yy*upu_h_3_x -
-            upu_dalpha_alpha_1_xy*upu_h_3_z));
-        /* (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real upu_dalpha_G_t = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_x;
-        const real upu_dalpha_G_t_2 = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_y;
-        const real upu_dalpha_G_t_3 = inv_upu_root_2*(upu_J_group_2_yz*upu_dalpha_alpha_1_yx +
-            upu_dalpha_alpha_1_xx*upu_h_3_y*upu_root_2 - upu_J_group_2_xz*upu_dalpha_alpha_1_xx);
-        const real upu_dalpha_G_t_4 = inv_upu_root_2*(upu_J_group_2_xz*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_yz*upu_dalpha_alpha_1_yy - upu_dalpha_alpha_1_xy*upu_h_3_y*upu_root_2);
-        /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real upu_dalpha_c_in_base_x = -axis_x_upu_axes2_x*upu_dalpha_phi_3_t -
-            axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t;
-        const real upu_dalpha_c_in_base_y = -axis_x_upu_axes2_y*upu_dalpha_phi_3_t -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t;
-        const real upu_dalpha_c_in_base_z = -axis_x_upu_axes2_z*upu_dalpha_phi_3_t -
-            axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t;
-        const real upu_dalpha_c_in_base_x_2 = axis_x_upu_axes2_x*upu_dalpha_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t_2;
-        const real upu_dalpha_c_in_base_y_2 = axis_x_upu_axes2_y*upu_dalpha_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t_2;
-        const real upu_dalpha_c_in_base_z_2 = axis_x_upu_axes2_z*upu_dalpha_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t_2;
-        /* (M_ta) coupling block of M */
-        const real upu_M_ta_t = upu_Q_t_13*upu_q_in_base_z;
-        const real upu_M_ta_t_2 = upu_Q_t_14*upu_q_in_base_y;
-        const real upu_M_ta_t_3 = upu_Q_t_17*upu_q_in_base_x;
-        const real upu_M_ta_t_4 = upu_M_ta_t + axis_x_upu_axes2_x*upu_dalpha_c_in_base_x +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_x_2 - upu_M_ta_t_2;
-        const real upu_M_ta_t_5 = upu_Q_t_12*upu_q_in_base_z -
-            axis_x_upu_axes2_y*upu_dalpha_c_in_base_x -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_x_2 - upu_Q_t_14*upu_q_in_base_x;
-        const real upu_M_ta_t_6 = axis_x_upu_axes2_z*upu_dalpha_c_in_base_x +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_x_2 + upu_Q_t_12*upu_q_in_base_y -
-            upu_Q_t_13*upu_q_in_base_x;
-        const real upu_M_ta_t_7 = axis_x_upu_axes2_x*upu_dalpha_c_in_base_y +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_y_2 + upu_Q_t_16*upu_q_in_base_z -
-            upu_Q_t_17*upu_q_in_base_y;
-        const real upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_3 -
-            axis_x_upu_axes2_y*upu_dalpha_c_in_base_y -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_y_2;
-        const real upu_M_ta_t_9 = axis_x_upu_axes2_z*upu_dalpha_c_in_base_y +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_y_2 + upu_Q_t_13*upu_q_in_base_y -
-            upu_Q_t_16*upu_q_in_base_x;
-        const real upu_M_ta_t_10 = axis_x_upu_axes2_x*upu_dalpha_c_in_base_z +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_z_2 + upu_Q_t_17*upu_q_in_base_z -
-            upu_Q_t_19*upu_q_in_base_y;
-        const real upu_M_ta_t_11 = upu_Q_t_14*upu_q_in_base_z -
-            axis_x_upu_axes2_y*upu_dalpha_c_in_base_z -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_z_2 - upu_Q_t_19*upu_q_in_base_x;
-        const real upu_M_ta_t_12 = upu_M_ta_t_3 - upu_M_ta_t_2 -
-            axis_x_upu_axes2_z*upu_dalpha_c_in_base_z -
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_z_2;
-        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
-        const real upu_dalpha_G_m1_t = upu_dalpha_Gamma_1_x*upu_w_1_t_4;
-        const real upu_dalpha_G_m1_t_2 = upu_dalpha_Gamma_1_y*upu_w_1_t_4;
-        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real upu_d_G_m1_t = upu_c_2*upu_h_3_y*upu_w_1_t_4;
-        const real upu_d_G_m1_t_2 = upu_w_1_t_4*(upu_s_2*(inv_upu_root_2*upu_J_group_2_xz -
-            upu_h_3_y) - inv_upu_root_2*upu_J_group_2_yz*upu_c_2);
-        const real upu_d_G_m1_t_3 = upu_d_Gamma_1_z*upu_w_1_t_4;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
-            axis_x_upu_axes2_x*upu_end_p1_r3_y;
-        const real upu_n_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y;
-        const real upu_n_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y;
-        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
-        const real upu_dalpha_G_m1_in_base_y = axis_x_upu_axes2_y*upu_dalpha_G_m1_t +
-            axis_y_upu_axes2_in_base_y*upu_dalpha_G_m1_t_2;
-        const real upu_dalpha_G_m1_in_base_z = axis_x_upu_axes2_z*upu_dalpha_G_m1_t +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_G_m1_t_2;
-        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real upu_d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_x*upu_d_G_m1_t_3 - axis_x_upu_axes2_x*upu_d_G_m1_t;
-        const real upu_d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_y*upu_d_G_m1_t_3 - axis_x_upu_axes2_y*upu_d_G_m1_t;
-        const real upu_d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_z*upu_d_G_m1_t_3 - axis_x_upu_axes2_z*upu_d_G_m1_t;
-        /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real upu_d_G_m_xx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_x;
-        const real upu_d_G_m_xy = upu_d_G_m1_in_base_y*upu_n_m1_in_base_x;
-        const real upu_d_G_m_xz = upu_d_G_m1_in_base_z*upu_n_m1_in_base_x;
-        const real upu_d_G_m_yx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_y;
-        /* (M_aa) rotational block of M */
-        const real upu_M_aa_t = upu_M_ta_t_7*upu_q_in_base_z + upu_d_G_m_xz*upu_q_in_base_y +
-            upu_n_m1_in_base_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_t +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_G_m1_t_2) - upu_M_ta_t_10*upu_q_in_base_y -
-            upu_d_G_m_xy*upu_q_in_base_z;
-        const real upu_M_aa_t_2 = upu_M_ta_t_11*upu_q_in_base_y + upu_d_G_m_xx*upu_q_in_base_z +
-            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_x - upu_M_ta_t_8*upu_q_in_base_z -
-            upu_d_G_m_xz*upu_q_in_base_x;
-        const real upu_M_aa_t_3 = upu_M_ta_t_12*upu_q_in_base_y + upu_M_ta_t_9*upu_q_in_base_z +
-            upu_d_G_m_xy*upu_q_in_base_x + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_x -
-            upu_d_G_m_xx*upu_q_in_base_y;
-        const real upu_M_aa_t_4 = upu_M_ta_t_5*upu_q_in_base_z + upu_d_G_m_yx*upu_q_in_base_z +
-            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_y - upu_M_ta_t_11*upu_q_in_base_x -
-            upu_d_G_m1_in_base_z*upu_n_m1_in_base_y*upu_q_in_base_x;
-        const real upu_M_aa_t_5 = upu_M_ta_t_12*upu_q_in_base_x + upu_M_ta_t_6*upu_q_in_base_z +
-            upu_d_G_m_yx*upu_q_in_base_y - upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_y -
-            upu_d_G_m1_in_base_y*upu_n_m1_in_base_y*upu_q_in_base_x;
-        const real upu_M_aa_t_6 = upu_M_ta_t_6*upu_q_in_base_y +
-            upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_z +
-            upu_d_G_m1_in_base_y*upu_n_m1_in_base_z*upu_q_in_base_x - upu_M_ta_t_9*upu_q_in_base_x
-            - upu_d_G_m1_in_base_x*upu_n_m1_in_base_z*upu_q_in_base_y;
-        /* (upu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
-        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        const real upu_o_1_t = upu_end_p1_in_axes2_y*upu_m1_w_1;
+        const real upu_o_1_in_axes2_y = upu_m1_w_1*upu_n_m1_in_axes2_y;
         /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real upu_eta_1 = omega_x*upu_n_m1_in_base_x + omega_y*upu_n_m1_in_base_y +
-            omega_z*upu_n_m1_in_base_z;
-        /* (upu-S_dot) velocity of the connection point */
-        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
-            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
-        /* (upu-qd_3) rate of joint 3 */
-        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
-        const real upu_qd_3_t_2 = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
-            upu_eta_1*upu_n_c_z);
+        const real upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z;
+        /* (upu-qd_1) rate of joint 1 */
+        const real upu_qd_1 = upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x +
+            axis_z_upu_axes2_y*upu_S_dot_y + axis_z_upu_axes2_z*upu_S_dot_z +
+            upu_eta_1*upu_n_c_t);
+        /* (upu-qd_2) rate of joint 2 */
+        const real upu_qd_2 = inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x +
+            axis_y_upu_axes2_y*upu_S_dot_y + axis_y_upu_axes2_z*upu_S_dot_z);
         /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_t = upu_qd_3_t_2*upu_s_2;
-        const real upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2;
-        /* (upu-u_1) centripetal acceleration of the connection point */
-        const real upu_u_1_x = omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
-        const real upu_u_1_y = omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
-        const real upu_u_1_z = omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
-        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t;
-        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        const real upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2;
+        const real upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1;
         /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_t = upu_omega_1_t*upu_omega_1_t;
-        const real upu_W_2_t_2 = upu_omega_1_t_2*upu_omega_1_t_2;
-        const real upu_W_2_t_3 = upu_qd_3_t*upu_qd_3_t;
-        const real upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2;
+        const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2;
+        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
+        const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
+        /* (upu-u_1) centripetal acceleration of the connection point */
+        const real upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4;
+        const real upu_u_1_y = omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5;
+        const real upu_u_1_z = omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3;
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t = 2*upu_S_dot_tip_x;
-        const real upu_bias_t_2 = upu_bias_t*upu_qd_3_t;
-        const real upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2;
-        const real upu_bias_z = upu_bias_t_3 + 2*upu_root_2*upu_zeta_2_y;
+        const real upu_bias_t = 2*upu_S_dot_in_axes2_x;
+        const real upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y;
+        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2;
         /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real upu_rel_o_z = axis_z_upu_axes2_in_base_x*upu_u_1_x +
-            axis_z_upu_axes2_in_base_y*upu_u_1_y + axis_z_upu_axes2_in_base_z*upu_u_1_z -
-            upu_bias_z;
+        const real upu_rel_o_in_axes2_z = axis_z_upu_axes2_x*upu_u_1_x +
+            axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z - upu_bias_in_axes2_z;
         /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z;
-        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
-            - upu_end_p1_r3_y*upu_omega_tip_z;
+        const real upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t;
+        const real upu_omega_in_axes2_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y
+            + axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y
+            + axis_y_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_z = axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y
+            + axis_z_upu_axes2_z*omega_z;
+        const real upu_nd_m1_in_axes2_x = upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_z;
+        const real upu_nd_m1_in_axes2_y = upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
         /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y;
-        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
-            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
-        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
-        /* (upu-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real upu_qdd_3_o_t = axis_y_upu_axes2_in_base_x*upu_u_1_x +
-            axis_y_upu_axes2_in_base_y*upu_u_1_y + axis_y_upu_axes2_in_base_z*upu_u_1_z -
-            upu_bias_t_2;
-        const real upu_qdd_3_o_t_2 = inv_upu_root_2*upu_qdd_3_o_t;
-        const real upu_qdd_3_o_t_3 = inv_upu_w_1_t_25*(upu_rel_o_z + upu_n_c_z*upu_nu_1);
+        const real upu_nu_1_t = -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+            upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
+            upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+            upu_omega_in_axes2_x) - (upu_omega_in_axes2_z -
+            upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
+        const real upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t;
+        /* (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real upu_qdd_1_o = upu_w_1_in_axes2_z*(upu_rel_o_in_axes2_z + upu_n_c_t*upu_nu_1);
+        /* (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real upu_dalpha_alpha_1_t = upu_o_1_t*upu_s_2;
+        const real upu_dalpha_alpha_1_in_axes2_xy = upu_o_1_in_axes2_y*upu_s_2;
+        const real upu_dalpha_alpha_1_in_axes2_yx = -upu_c_2*upu_o_1_t;
+        const real upu_dalpha_alpha_1_t_2 = -upu_c_2*upu_o_1_in_axes2_y;
+        /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real upu_d_alpha_1_in_axes2_xz = upu_s_2*upu_w_1_in_axes2_z;
+        const real upu_d_alpha_1_t = -upu_c_2*upu_w_1_in_axes2_z;
         /* (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real upu_alpha_1_o_t = upu_qdd_3_o_t_3*upu_s_2;
-        const real upu_alpha_1_o_t_2 = upu_c_2*upu_qdd_3_o_t_3;
+        const real upu_alpha_1_o_in_axes2_x = upu_qdd_1_o*upu_s_2;
+        const real upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o;
         /* (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real upu_alpha_2_o_x = upu_alpha_1_o_t - upu_zeta_2_x;
-        const real upu_alpha_2_o_y = -upu_alpha_1_o_t_2 - upu_zeta_2_y;
+        const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x;
+        const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
         /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real upu_B_2_o_xy = -2*upu_W_2_xy - upu_qdd_3_o_t_2;
-        const real upu_B_2_o_zx = upu_zeta_2_y - upu_alpha_2_o_y;
-        const real upu_B_2_o_zy = upu_alpha_2_o_x - upu_zeta_2_x;
+        const real upu_B_2_o_t = upu_bias_t*upu_qd_2;
+        const real upu_B_2_o_t_2 = axis_y_upu_axes2_x*upu_u_1_x + axis_y_upu_axes2_y*upu_u_1_y +
+            axis_y_upu_axes2_z*upu_u_1_z - upu_B_2_o_t;
+        const real upu_B_2_o_in_axes2_yx = inv_upu_root_2*upu_B_2_o_t_2;
+        const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx;
+        const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
+        const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
+        /* (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
+           link 3, less gravity */
+        const real upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yx*upu_root_2;
+        const real upu_dalpha_acc_3_in_axes2_zy = upu_dalpha_alpha_1_t_2*upu_root_2;
+        /* (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
+           3, less gravity */
+        const real upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_root_2;
         /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real upu_g_r0_x = m->upu_g_r0_x[i];
-        const real upu_g_r0_y = m->upu_g_r0_y[i];
-        const real upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x;
-        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
-        const real upu_g_r0_z = m->upu_g_r0_z[i];
-        const real upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y;
-        const real upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2;
-        const real upu_acc_3_o_x = axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y +
-            axis_x_upu_axes2_z*upu_u_1_z - upu_g_r3_x;
-        const real upu_acc_3_o_y = upu_bias_t_2 + upu_qdd_3_o_t - upu_g_r3_y;
-        const real upu_acc_3_o_z = upu_bias_t_3 + upu_B_2_o_zx*upu_root_2 - upu_g_r1_x;
+        const real upu_acc_3_t = m->upu_acc_3_t[i];
+        const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
+        const real upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t;
+        const real upu_acc_3_o_t = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t;
+        const real upu_acc_3_t_3 = m->upu_acc_3_t_3[i];
+        const real upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_o_t*upu_c_2;
+        const real upu_g_in_axes2_y = upu_acc_3_o_t*upu_s_2 + upu_acc_3_t_3*upu_c_2;
+        const real upu_acc_3_o_in_axes2_x = axis_x_upu_axes2_x*upu_u_1_x +
+            axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z - upu_g_in_axes2_x;
+        const real upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y;
+        const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_root_2 - upu_bias_t_2 -
+            upu_g_in_axes2_z;
+        /* (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
+        const real upu_dalpha_phi_3_in_axes2_xx =
+            upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_y;
+        /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
+        const real upu_d_phi_3_in_axes2_xy = inv_upu_root_2*upu_h_3_in_spec2_z;
         /* (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real upu_f_3_o_x = upu_acc_3_o_x*upu_link3_mass - upu_B_2_o_xy*upu_h_3_z -
-            upu_alpha_1_o_t_2*upu_h_3_y - upu_h_3_x*(upu_W_2_t_2 + upu_W_2_t_3);
-        const real upu_f_3_o_y = upu_acc_3_o_y*upu_link3_mass + upu_h_3_x*upu_qdd_3_o_t_2 +
-            upu_h_3_z*(upu_W_2_t + upu_W_2_t_3) - upu_alpha_1_o_t*upu_h_3_y;
-        const real upu_f_3_o_z = upu_B_2_o_zx*upu_h_3_x + upu_acc_3_o_z*upu_link3_mass -
-            upu_B_2_o_zy*upu_h_3_z - upu_h_3_y*(upu_W_2_t + upu_W_2_t_2);
+        const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
+        const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
+        const real upu_f_3_o_t_3 = upu_qd_2*upu_qd_2;
+        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_f_3_o_in_axes2_x = upu_acc_3_o_in_axes2_x*upu_link3_mass +
+            upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y - upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z
+            - upu_h_3_in_spec2_x*(upu_f_3_o_t_2 + upu_f_3_o_t_3);
+        const real upu_f_3_o_in_axes2_y = upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x +
+            upu_acc_3_o_in_axes2_y*upu_link3_mass + upu_h_3_in_spec2_z*(upu_f_3_o_t +
+            upu_f_3_o_t_3) - upu_alpha_1_o_in_axes2_x*upu_h_3_in_spec2_y;
+        const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x +
+            upu_acc_3_o_in_axes2_z*upu_link3_mass - upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z -
+            upu_h_3_in_spec2_y*(upu_f_3_o_t + upu_f_3_o_t_2);
         /* (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real upu_Sigma_2_yy = m->upu_Sigma_2_yy[i];
-        const real upu_Sigma_2_zz = m->upu_Sigma_2_zz[i];
-        const real upu_h_2_y = m->upu_h_2_y[i];
-        const real upu_h_2_z = m->upu_h_2_z[i];
-        const real upu_mu_2_o_x = upu_B_2_o_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_3_o_t_2 +
-            upu_J_group_2_yz*(upu_W_2_t_2 - upu_W_2_t_3) + upu_Sigma_2_zz*upu_alpha_1_o_t +
-            upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_o_zx*upu_J_group_2_xy -
-            upu_acc_3_o_y*upu_h_3_y - upu_acc_3_o_z*upu_h_3_z;
-        const real upu_Sigma_2_xx = m->upu_Sigma_2_xx[i];
-        const real upu_h_2_x = m->upu_h_2_x[i];
-        const real upu_mu_2_o_y = upu_B_2_o_zy*upu_J_group_2_xy + upu_acc_3_o_x*upu_h_3_y +
-            upu_g_r1_x*upu_h_2_x - upu_B_2_o_xy*upu_J_group_2_yz - upu_B_2_o_zx*upu_Sigma_2_xx -
-            upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_3) - upu_Sigma_2_zz*upu_alpha_1_o_t_2 -
-            upu_acc_3_o_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y;
-        const real upu_mu_2_o_z = upu_J_group_2_xy*(upu_W_2_t - upu_W_2_t_2) +
-            upu_J_group_2_xz*upu_alpha_1_o_t + upu_Sigma_2_xx*upu_qdd_3_o_t_2 +
-            upu_acc_3_o_x*upu_h_3_z + upu_acc_3_o_y*upu_h_3_x - upu_B_2_o_xy*upu_Sigma_2_yy -
-            upu_J_group_2_yz*upu_alpha_1_o_t_2 - upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x;
+        const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
+        const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
+        const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
+        const real upu_Sigma_2_in_axes2_yy = m->upu_Sigma_2_in_axes2_yy[i];
+        const real upu_Sigma_2_in_axes2_zz = m->upu_Sigma_2_in_axes2_zz[i];
+        const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
+        const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
+        const real upu_mu_2_o_in_axes2_x = upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+            upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_f_3_o_t_3) +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y
+            + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
+            upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
+            upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z;
+        const real upu_Sigma_2_in_axes2_xx = m->upu_Sigma_2_in_axes2_xx[i];
+        const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
+        const real upu_mu_2_o_in_axes2_y = upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
+            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
+            - upu_f_3_o_t_3) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x -
+            upu_g_in_axes2_x*upu_h_2_in_spec2_y;
+        const real upu_mu_2_o_in_axes2_z = upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
+            upu_J_group_2_in_axes2_xy*(upu_f_3_o_t - upu_f_3_o_t_2) +
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
+            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z
+            - upu_g_in_axes2_y*upu_h_2_in_spec2_x;
         /* (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real upu_N_2_o_y = upu_mu_2_o_y - upu_f_3_o_z*upu_root_2;
-        const real upu_N_2_o_r0_y = upu_mu_2_o_x*upu_s_2 - upu_N_2_o_y*upu_c_2;
+        const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_root_2;
+        const real upu_N_2_o_in_axes1_z = upu_N_2_o_in_axes2_y*upu_c_2 +
+            upu_mu_2_o_in_axes2_x*upu_s_2;
+        /* (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+           links' inertia and weight */
+        const real upu_J_group_2_in_axes2_xx = m->upu_J_group_2_in_axes2_xx[i];
+        const real upu_J_group_2_in_axes2_yy = m->upu_J_group_2_in_axes2_yy[i];
+        const real upu_dalpha_Gamma_1_in_axes2_x =
+            upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
+            - upu_root_2*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z -
+            upu_dalpha_acc_3_t*upu_link3_mass -
+            upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_x)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
+            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t);
+        const real upu_dalpha_Gamma_1_in_axes2_y =
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_x -
+            upu_root_2*(upu_dalpha_acc_3_in_axes2_zy*upu_link3_mass +
+            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
+            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_z)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_z);
+        /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real upu_d_Gamma_1_in_axes2_z =
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
+            - upu_root_2*(upu_d_acc_3_in_axes2_zz*upu_link3_mass +
+            upu_d_alpha_1_t*upu_h_3_in_spec2_x - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
+            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z);
+        /* (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z;
+        const real upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z;
+        const real upu_dalpha_G_in_axes2_yx =
+            inv_upu_root_2*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_root_2 -
+            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t);
+        const real upu_dalpha_G_in_axes2_yy =
+            inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_y*upu_root_2);
+        /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real upu_d_G_in_axes2_yz =
+            inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
+            upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_root_2);
         /* (upu-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real upu_G_o_t = upu_f_3_o_y + inv_upu_root_2*upu_mu_2_o_z;
-        const real upu_G_o_t_2 = inv_upu_w_1_t_25*upu_N_2_o_r0_y;
-        const real upu_G_o_t_3 = inv_upu_w_1_t_25*upu_N_2_o_r0_y*upu_n_c_z;
-        /* (upu-U) velocity and gravity terms of the leg force */
-        const real upu_U_in_base_x = axis_x_upu_axes2_x*upu_f_3_o_x +
-            axis_y_upu_axes2_in_base_x*upu_G_o_t + axis_z_upu_axes2_in_base_x*upu_G_o_t_2;
-        const real upu_U_in_base_y = axis_x_upu_axes2_y*upu_f_3_o_x +
-            axis_y_upu_axes2_in_base_y*upu_G_o_t + axis_z_upu_axes2_in_base_y*upu_G_o_t_2;
-        const real upu_U_in_base_z = axis_x_upu_axes2_z*upu_f_3_o_x +
-            axis_y_upu_axes2_in_base_z*upu_G_o_t + axis_z_upu_axes2_in_base_z*upu_G_o_t_2;
+        const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
+            inv_upu_root_2*upu_mu_2_o_in_axes2_z;
+        const real upu_G_o_in_axes2_z = upu_N_2_o_in_axes1_z*upu_w_1_in_axes2_z;
+        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real upu_dalpha_G_m1_in_axes2_x = upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1;
+        const real upu_dalpha_G_m1_in_axes2_y = upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1;
+        const real upu_dalpha_G_m1_y = axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y;
+        const real upu_dalpha_G_m1_z = axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y;
+        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1;
+        const real upu_d_G_m1_in_axes2_y =
+            upu_m1_w_1*(upu_s_2*(inv_upu_root_2*upu_J_group_2_in_axes2_xz - upu_h_3_in_spec2_y) +
+            inv_upu_root_2*upu_J_group_2_in_axes2_yz*upu_c_2);
+        const real upu_d_G_m1_in_axes2_z = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1;
+        const real upu_d_G_m1_x = axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x +
+            axis_y_upu_axes2_x*upu_d_G_m1_in_axes2_y + axis_z_upu_axes2_x*upu_d_G_m1_in_axes2_z;
+        const real upu_d_G_m1_y = axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x +
+            axis_y_upu_axes2_y*upu_d_G_m1_in_axes2_y + axis_z_upu_axes2_y*upu_d_G_m1_in_axes2_z;
+        const real upu_d_G_m1_z = axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x +
+            axis_y_upu_axes2_z*upu_d_G_m1_in_axes2_y + axis_z_upu_axes2_z*upu_d_G_m1_in_axes2_z;
+        /* (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real upu_G_m1_o = upu_N_2_o_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z;
+        /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x;
+        const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
+        const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
+        const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
         /* (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real upu_G_m_o_x = upu_G_o_t_3*upu_end_p1_r3_y;
-        const real upu_G_m_o_y = upu_G_o_t_3*upu_end_p1_r3_x;
+        const real upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y;
+        /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real upu_dalpha_c_in_axes2_xy = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y;
+        /* (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y;
+        /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real upu_J_group_2_in_axes2_zz = m->upu_J_group_2_in_axes2_zz[i];
+        const real upu_Q_t = inv_upu_root_2*(upu_h_3_in_spec2_x +
+            inv_upu_root_2*upu_J_group_2_in_axes2_zz + upu_root_2*(upu_link3_mass +
+            inv_upu_root_2*upu_h_3_in_spec2_x)) - upu_link3_mass;
+        const real upu_Q_t_2 = R(0.5)*upu_Q_t;
+        const real upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*upu_w_1_in_axes2_z - upu_link3_mass;
+        const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
+        const real upu_Q_t_5 = axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy +
+            axis_y_upu_axes2_x*upu_Q_t_2 + axis_z_upu_axes2_x*upu_d_G_in_axes2_yz;
+        const real upu_Q_t_6 = axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy +
+            axis_y_upu_axes2_y*upu_Q_t_2 + axis_z_upu_axes2_y*upu_d_G_in_axes2_yz;
+        const real upu_Q_t_7 = axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy +
+            axis_y_upu_axes2_z*upu_Q_t_2 + axis_z_upu_axes2_z*upu_d_G_in_axes2_yz;
+        const real upu_Q_t_8 = axis_z_upu_axes2_x*upu_Q_t_4 -
+            axis_x_upu_axes2_x*upu_d_c_in_axes2_xz;
+        const real upu_Q_t_9 = axis_z_upu_axes2_y*upu_Q_t_4 -
+            axis_x_upu_axes2_y*upu_d_c_in_axes2_xz;
+        const real upu_Q_t_10 = axis_z_upu_axes2_z*upu_Q_t_4 -
+            axis_x_upu_axes2_z*upu_d_c_in_axes2_xz;
+        const real upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_8;
+        const real upu_Q_xx = 2*upu_Q_t_11 + upu_link3_mass;
+        const real upu_Q_xy = axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 +
+            axis_z_upu_axes2_x*upu_Q_t_9 + axis_z_upu_axes2_y*upu_Q_t_8;
+        const real upu_Q_xz = axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
+            axis_z_upu_axes2_x*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_8;
+        const real upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + axis_z_upu_axes2_y*upu_Q_t_9;
+        const real upu_Q_yy = 2*upu_Q_t_12 + upu_link3_mass;
+        const real upu_Q_yz = axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
+            axis_z_upu_axes2_y*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_9;
+        const real upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + axis_z_upu_axes2_z*upu_Q_t_10;
+        const real upu_Q_zz = 2*upu_Q_t_13 + upu_link3_mass;
+        /* (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
+           actuation */
+        const real upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y;
+        /* (upu-U) velocity and gravity terms of the leg force */
+        const real upu_U_x = axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
+            axis_y_upu_axes2_x*upu_G_o_in_axes2_y + axis_z_upu_axes2_x*upu_G_o_in_axes2_z;
+        const real upu_U_y = axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
+            axis_y_upu_axes2_y*upu_G_o_in_axes2_y + axis_z_upu_axes2_y*upu_G_o_in_axes2_z;
+        const real upu_U_z = axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
+            axis_y_upu_axes2_z*upu_G_o_in_axes2_y + axis_z_upu_axes2_z*upu_G_o_in_axes2_z;
+        /* (M_ta) coupling block of M */
+        const real upu_M_ta_t = -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx;
+        const real upu_M_ta_t_2 = -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx;
+        const real upu_M_ta_t_3 = -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx;
+        const real upu_M_ta_t_4 = axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xy -
+            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy;
+        const real upu_M_ta_t_5 = axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xy -
+            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy;
+        const real upu_M_ta_t_6 = axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xy -
+            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy;
+        const real upu_M_ta_t_7 = upu_Q_xy*upu_q_z;
+        const real upu_M_ta_t_8 = upu_Q_xz*upu_q_y;
+        const real upu_M_ta_t_9 = upu_Q_yz*upu_q_x;
+        const real upu_M_ta_t_10 = upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
+            axis_y_upu_axes2_x*upu_M_ta_t_4;
+        const real upu_M_ta_t_11 = upu_Q_xx*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t -
+            axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*upu_q_x;
+        const real upu_M_ta_t_12 = upu_Q_xy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t -
+            axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*upu_q_y;
+        const real upu_M_ta_t_13 = upu_Q_yz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 -
+            axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*upu_q_z;
+        const real upu_M_ta_t_14 = upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
+            axis_y_upu_axes2_y*upu_M_ta_t_5;
+        const real upu_M_ta_t_15 = upu_Q_yy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 -
+            axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*upu_q_y;
+        const real upu_M_ta_t_16 = upu_Q_zz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 -
+            axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*upu_q_z;
+        const real upu_M_ta_t_17 = upu_Q_xz*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 -
+            axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*upu_q_x;
+        const real upu_M_ta_t_18 = upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
+            axis_y_upu_axes2_z*upu_M_ta_t_6;
+        /* (M_aa) rotational block of M */
+        const real upu_M_aa_t = upu_M_ta_t_16*upu_q_y + upu_d_G_m_xz*upu_q_y +
+            upu_n_m1_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_x*upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*upu_q_z -
+            upu_d_G_m_xy*upu_q_z;
+        const real upu_M_aa_t_2 = upu_M_ta_t_17*upu_q_y + upu_d_G_m_xx*upu_q_z +
+            upu_dalpha_G_m1_y*upu_n_m1_x - upu_M_ta_t_14*upu_q_z - upu_d_G_m_xz*upu_q_x;
+        const real upu_M_aa_t_3 = upu_M_ta_t_18*upu_q_y + upu_d_G_m_xy*upu_q_x +
+            upu_dalpha_G_m1_z*upu_n_m1_x - upu_M_ta_t_15*upu_q_z - upu_d_G_m_xx*upu_q_y;
+        const real upu_M_aa_t_4 = upu_M_ta_t_11*upu_q_z + upu_d_G_m_yx*upu_q_z +
+            upu_dalpha_G_m1_y*upu_n_m1_y - upu_M_ta_t_17*upu_q_x -
+            upu_d_G_m1_z*upu_n_m1_y*upu_q_x;
+        const real upu_M_aa_t_5 = upu_M_ta_t_12*upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y +
+            upu_d_G_m1_y*upu_n_m1_y*upu_q_x - upu_M_ta_t_18*upu_q_x - upu_d_G_m_yx*upu_q_y;
+        const real upu_M_aa_t_6 = upu_M_ta_t_15*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z +
+            upu_d_G_m1_y*upu_n_m1_z*upu_q_x - upu_M_ta_t_12*upu_q_y -
+            upu_d_G_m1_x*upu_n_m1_z*upu_q_y;
         /* (Z_a) rotational part of Z */
-        const real upu_Z_a_t = axis_y_upu_axes2_in_base_x*upu_G_m_o_y +
-            upu_U_in_base_z*upu_q_in_base_y - axis_x_upu_axes2_x*upu_G_m_o_x -
-            upu_U_in_base_y*upu_q_in_base_z;
-        const real upu_Z_a_t_2 = axis_y_upu_axes2_in_base_y*upu_G_m_o_y +
-            upu_U_in_base_x*upu_q_in_base_z - axis_x_upu_axes2_y*upu_G_m_o_x -
-            upu_U_in_base_z*upu_q_in_base_x;
-        const real upu_Z_a_t_3 = axis_y_upu_axes2_in_base_z*upu_G_m_o_y +
-            upu_U_in_base_y*upu_q_in_base_x - axis_x_upu_axes2_z*upu_G_m_o_x -
-            upu_U_in_base_x*upu_q_in_base_y;
+        const real upu_Z_a_t = axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*upu_q_y -
+            axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*upu_q_z;
+        const real upu_Z_a_t_2 = axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*upu_q_z -
+            axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*upu_q_x;
+        const real upu_Z_a_t_3 = axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*upu_q_x -
+            axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*upu_q_y;
         /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        const real upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y -
-            axis_x_upu_axes2_y*upu_q_in_base_z;
-        const real upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z -
-            axis_x_upu_axes2_z*upu_q_in_base_x;
-        const real upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x -
-            axis_x_upu_axes2_x*upu_q_in_base_y;
-        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
-           out */
-        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
-        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
-        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
+        const real upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z;
+        const real upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x;
+        const real upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y;
         /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real upu_Hk_a_1_x = upu_n_m1_in_base_x + upu_n_c_t_2*upu_q_in_base_z -
-            upu_n_c_t_3*upu_q_in_base_y;
-        const real upu_Hk_a_1_y = upu_n_m1_in_base_y + upu_n_c_t_3*upu_q_in_base_x -
-            upu_n_c_t*upu_q_in_base_z;
-        const real upu_Hk_a_1_z = upu_n_m1_in_base_z + upu_n_c_t*upu_q_in_base_y -
-            upu_n_c_t_2*upu_q_in_base_x;
+        const real upu_Hk_a_1_x = upu_n_m1_x + upu_n_c_t_3*upu_q_z - upu_n_c_t_4*upu_q_y;
+        const real upu_Hk_a_1_y = upu_n_m1_y + upu_n_c_t_4*upu_q_x - upu_n_c_t_2*upu_q_z;
+        const real upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_t_2*upu_q_y - upu_n_c_t_3*upu_q_x;
         /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real upu_gamma_c1 = upu_nu_1 - upu_n_c_z*upu_rel_o_z;
-        terms[0*count + k] = add ? terms[0*count + k] + upu_Q_t_12 : upu_Q_t_12;  /* total_upu_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + upu_Q_t_13 : upu_Q_t_13;  /* total_upu_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + upu_Q_t_14 : upu_Q_t_14;  /* total_upu_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + upu_Q_t_16 : upu_Q_t_16;  /* total_upu_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + upu_Q_t_17 : upu_Q_t_17;  /* total_upu_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + upu_Q_t_19 : upu_Q_t_19;  /* total_upu_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + upu_M_ta_t_4 : upu_M_ta_t_4;  /* total_upu_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + upu_M_ta_t_5 : upu_M_ta_t_5;  /* total_upu_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + upu_M_ta_t_6 : upu_M_ta_t_6;  /* total_upu_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + upu_M_ta_t_7 : upu_M_ta_t_7;  /* total_upu_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + upu_M_ta_t_8 : upu_M_ta_t_8;  /* total_upu_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + upu_M_ta_t_9 : upu_M_ta_t_9;  /* total_upu_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + upu_M_ta_t_10 : upu_M_ta_t_10;  /* total_upu_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + upu_M_ta_t_11 : upu_M_ta_t_11;  /* total_upu_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + upu_M_ta_t_12 : upu_M_ta_t_12;  /* total_upu_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + upu_M_aa_t : upu_M_aa_t;  /* total_upu_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + upu_M_aa_t_2 : upu_M_aa_t_2;  /* total_upu_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + upu_M_aa_t_3 : upu_M_aa_t_3;  /* total_upu_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + upu_M_aa_t_4 : upu_M_aa_t_4;  /* total_upu_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + upu_M_aa_t_5 : upu_M_aa_t_5;  /* total_upu_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + upu_M_aa_t_6 : upu_M_aa_t_6;  /* total_upu_zz_3 */
-        terms[21*count + k] = add ? terms[21*count + k] + upu_U_in_base_x : upu_U_in_base_x;  /* total_upu_x */
-        terms[22*count + k] = add ? terms[22*count + k] + upu_U_in_base_y : upu_U_in_base_y;  /* total_upu_y */
-        terms[23*count + k] = add ? terms[23*count + k] + upu_U_in_base_z : upu_U_in_base_z;  /* total_upu_z */
-        terms[24*count + k] = add ? terms[24*count + k] + upu_Z_a_t : upu_Z_a_t;  /* total_upu_x_2 */
-        terms[25*count + k] = add ? terms[25*count + k] + upu_Z_a_t_2 : upu_Z_a_t_2;  /* total_upu_y_2 */
-        terms[26*count + k] = add ? terms[26*count + k] + upu_Z_a_t_3 : upu_Z_a_t_3;  /* total_upu_z_2 */
+        const real upu_gamma_c1 = upu_nu_1 - upu_n_c_t*upu_rel_o_in_axes2_z;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + upu_Q_xx : upu_Q_xx;  /* M_tt_upu_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + upu_Q_xy : upu_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + upu_Q_xz : upu_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + upu_Q_yy : upu_Q_yy;  /* M_tt_upu_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + upu_Q_yz : upu_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + upu_Q_zz : upu_Q_zz;  /* M_tt_upu_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + upu_M_ta_t_10 : upu_M_ta_t_10;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + upu_M_ta_t_11 : upu_M_ta_t_11;  /* M_ta_upu_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + upu_M_ta_t_12 : upu_M_ta_t_12;  /* M_ta_upu_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + upu_M_ta_t_13 : upu_M_ta_t_13;  /* M_ta_upu_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + upu_M_ta_t_14 : upu_M_ta_t_14;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + upu_M_ta_t_15 : upu_M_ta_t_15;  /* M_ta_upu_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + upu_M_ta_t_16 : upu_M_ta_t_16;  /* M_ta_upu_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + upu_M_ta_t_17 : upu_M_ta_t_17;  /* M_ta_upu_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + upu_M_ta_t_18 : upu_M_ta_t_18;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + upu_M_aa_t : upu_M_aa_t;  /* M_aa_upu_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + upu_M_aa_t_2 : upu_M_aa_t_2;  /* M_aa_upu_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + upu_M_aa_t_3 : upu_M_aa_t_3;  /* M_aa_upu_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + upu_M_aa_t_4 : upu_M_aa_t_4;  /* M_aa_upu_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + upu_M_aa_t_5 : upu_M_aa_t_5;  /* M_aa_upu_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + upu_M_aa_t_6 : upu_M_aa_t_6;  /* M_aa_upu_zz */
+        /* (Z_t) translational part of Z */
+        terms[21*count + k] = add ? terms[21*count + k] + upu_U_x : upu_U_x;  /* Z_t_upu_x */
+        terms[22*count + k] = add ? terms[22*count + k] + upu_U_y : upu_U_y;  /* Z_t_upu_y */
+        terms[23*count + k] = add ? terms[23*count + k] + upu_U_z : upu_U_z;  /* Z_t_upu_z */
+        /* (Z_a) rotational part of Z */
+        terms[24*count + k] = add ? terms[24*count + k] + upu_Z_a_t : upu_Z_a_t;  /* Z_a_upu_x */
+        terms[25*count + k] = add ? terms[25*count + k] + upu_Z_a_t_2 : upu_Z_a_t_2;  /* Z_a_upu_y */
+        terms[26*count + k] = add ? terms[26*count + k] + upu_Z_a_t_3 : upu_Z_a_t_3;  /* Z_a_upu_z */
+        /* (upu-w_3) force part of reciprocal wrench 3 */
         o[0*count + k] = axis_x_upu_axes2_x;
         o[1*count + k] = axis_x_upu_axes2_y;
         o[2*count + k] = axis_x_upu_axes2_z;
-        o[3*count + k] = upu_H_a_3_t;
-        o[4*count + k] = upu_H_a_3_t_2;
-        o[5*count + k] = upu_H_a_3_t_3;
-        o[6*count + k] = -upu_n_c_t;
-        o[7*count + k] = -upu_n_c_t_2;
-        o[8*count + k] = -upu_n_c_t_3;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        o[3*count + k] = upu_H_a_3_x;
+        o[4*count + k] = upu_H_a_3_y;
+        o[5*count + k] = upu_H_a_3_z;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        o[6*count + k] = -upu_n_c_t_2;
+        o[7*count + k] = -upu_n_c_t_3;
+        o[8*count + k] = -upu_n_c_t_4;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = upu_Hk_a_1_x;
         o[10*count + k] = upu_Hk_a_1_y;
         o[11*count + k] = upu_Hk_a_1_z;
+        /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
         o[12*count + k] = upu_gamma_c1;
         o[14*count + k] = ((axis_x_upu_axes2_x + (axis_x_upu_axes2_y + axis_x_upu_axes2_z)) +
-            (upu_H_a_3_t + (upu_H_a_3_t_2 + upu_H_a_3_t_3))) + ((upu_n_c_t + (upu_n_c_t_2 +
-            upu_n_c_t_3)) + ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_gamma_c1)));
+            (upu_H_a_3_x + (upu_H_a_3_y + upu_H_a_3_z))) + ((upu_n_c_t_2 + (upu_n_c_t_3 +
+            upu_n_c_t_4)) + ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_gamma_c1)));
         o[13*count + k] = UNLESS(magnitude(upu_rho2_1) >
             TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_rho2_2) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-upu_volume_c_t) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_volume_c_t) >
             TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(upu_w_1_t_3) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(upu_w_1_t) > TOLERANCE*R(0.8));
     }
 }
 
@@ -2095,101 +2128,104 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_upu_xx = sums[0*w + k];
         const real platform_mass = m->platform_mass;
-        const real total_upu_xx = sums[0*w + k];
-        const real M_tt_xx = platform_mass + total_upu_xx;
-        const real total_upu_yy = sums[3*w + k];
-        const real M_tt_yy = platform_mass + total_upu_yy;
-        const real total_upu_zz = sums[5*w + k];
-        const real M_tt_zz = platform_mass + total_upu_zz;
+        const real M_tt_xx = M_tt_upu_xx + platform_mass;
+        const real M_tt_upu_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_upu_yy + platform_mass;
+        const real M_tt_upu_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_upu_zz + platform_mass;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[20*w + k];
-        const real total_upu_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z + total_upu_xy_2;
-        const real h_star_in_base_y = s[19*w + k];
-        const real total_upu_xz_2 = sums[8*w + k];
-        const real M_ta_xz = -h_star_in_base_y - total_upu_xz_2;
-        const real total_upu_yx = sums[9*w + k];
-        const real M_ta_yx = -h_star_in_base_z - total_upu_yx;
-        const real h_star_in_base_x = s[18*w + k];
-        const real total_upu_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_upu_yz_2;
-        const real total_upu_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y - total_upu_zx;
-        const real total_upu_zy = sums[13*w + k];
-        const real M_ta_zy = total_upu_zy - h_star_in_base_x;
+        const real M_ta_upu_xy = sums[7*w + k];
+        const real h_star_z = s[20*w + k];
+        const real M_ta_xy = M_ta_upu_xy + h_star_z;
+        const real M_ta_upu_xz = sums[8*w + k];
+        const real h_star_y = s[19*w + k];
+        const real M_ta_xz = M_ta_upu_xz - h_star_y;
+        const real M_ta_upu_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_upu_yx - h_star_z;
+        const real M_ta_upu_yz = sums[11*w + k];
+        const real h_star_x = s[18*w + k];
+        const real M_ta_yz = M_ta_upu_yz + h_star_x;
+        const real M_ta_upu_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_upu_zx + h_star_y;
+        const real M_ta_upu_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_upu_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_10 = s[21*w + k];
-        const real total_upu_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
-        const real J_star_t_11 = s[22*w + k];
-        const real total_upu_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
-        const real J_star_t_12 = s[23*w + k];
-        const real total_upu_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
-        const real J_star_t_14 = s[24*w + k];
-        const real total_upu_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
-        const real J_star_t_15 = s[25*w + k];
-        const real total_upu_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
-        const real J_star_t_17 = s[26*w + k];
-        const real total_upu_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
+        const real J_star_xx = s[21*w + k];
+        const real M_aa_upu_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_upu_xx;
+        const real J_star_xy = s[22*w + k];
+        const real M_aa_upu_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_upu_xy;
+        const real J_star_xz = s[23*w + k];
+        const real M_aa_upu_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_upu_xz;
+        const real J_star_yy = s[24*w + k];
+        const real M_aa_upu_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_upu_yy;
+        const real J_star_yz = s[25*w + k];
+        const real M_aa_upu_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_upu_yz;
+        const real J_star_zz = s[26*w + k];
+        const real M_aa_upu_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_upu_zz;
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[27*w + k];
-        const real total_upu_x = sums[21*w + k];
-        const real Z_t_x = Z_p_x + total_upu_x;
+        const real Z_t_upu_x = sums[21*w + k];
+        const real Z_t_x = Z_p_x + Z_t_upu_x;
         const real Z_p_y = s[28*w + k];
-        const real total_upu_y = sums[22*w + k];
-        const real Z_t_y = Z_p_y + total_upu_y;
+        const real Z_t_upu_y = sums[22*w + k];
+        const real Z_t_y = Z_p_y + Z_t_upu_y;
         const real Z_p_z = s[29*w + k];
-        const real total_upu_z = sums[23*w + k];
-        const real Z_t_z = Z_p_z + total_upu_z;
+        const real Z_t_upu_z = sums[23*w + k];
+        const real Z_t_z = Z_p_z + Z_t_upu_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[30*w + k];
-        const real total_upu_x_2 = sums[24*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_upu_x_2;
-        const real Z_q_in_base_y = s[31*w + k];
-        const real total_upu_y_2 = sums[25*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_upu_y_2;
-        const real Z_q_in_base_z = s[32*w + k];
-        const real total_upu_z_2 = sums[26*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_upu_z_2;
+        const real Z_a_upu_x = sums[24*w + k];
+        const real Z_q_x = s[30*w + k];
+        const real Z_a_x = Z_a_upu_x + Z_q_x;
+        const real Z_a_upu_y = sums[25*w + k];
+        const real Z_q_y = s[31*w + k];
+        const real Z_a_y = Z_a_upu_y + Z_q_y;
+        const real Z_a_upu_z = sums[26*w + k];
+        const real Z_q_z = s[32*w + k];
+        const real Z_a_z = Z_a_upu_z + Z_q_z;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_upu_xy = sums[1*w + k];
-        M[1*w + k] = total_upu_xy;
-        M[6*w + k] = total_upu_xy;
-        const real total_upu_xz = sums[2*w + k];
-        M[2*w + k] = total_upu_xz;
-        M[12*w + k] = total_upu_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_upu_yz = sums[4*w + k];
-        M[8*w + k] = total_upu_yz;
-        M[13*w + k] = total_upu_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_upu_xx_2 = sums[6*w + k];
-        M[3*w + k] = -total_upu_xx_2;
-        M[18*w + k] = -total_upu_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_upu_yy_2 = sums[10*w + k];
-        M[10*w + k] = total_upu_yy_2;
-        M[25*w + k] = total_upu_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_upu_zz_2 = sums[14*w + k];
-        M[17*w + k] = total_upu_zz_2;
-        M[32*w + k] = total_upu_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2199,17 +2235,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
-        t->total[k] += (((M_tt_xx + (total_upu_xy + total_upu_xz)) + (M_tt_yy + (total_upu_yz +
-            M_tt_zz))) + ((total_upu_xx_2 + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + total_upu_yy_2) +
-            (M_ta_yz + M_ta_zx)))) + (((M_ta_zy + (total_upu_zz_2 + M_aa_xx)) + ((M_aa_xy +
-            M_aa_xz) + (M_aa_yy + M_aa_yz))) + ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) +
-            (Z_a_y + Z_a_z))));
+        t->total[k] += (((M_tt_xx + (M_tt_xy + M_tt_xz)) + (M_tt_yy + (M_tt_yz + M_tt_zz))) +
+            ((M_ta_xx + (M_ta_xy + M_ta_xz)) + ((M_ta_yx + M_ta_yy) + (M_ta_yz + M_ta_zx)))) +
+            (((M_ta_zy + (M_ta_zz + M_aa_xx)) + ((M_aa_xy + M_aa_xz) + (M_aa_yy + M_aa_yz))) +
+            ((M_aa_zz + (Z_t_x + Z_t_y)) + ((Z_t_z + Z_a_x) + (Z_a_y + Z_a_z))));
     }
 }
 
@@ -2280,37 +2317,43 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (J_star) inertia tensor about the platform origin */
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
         const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
+            J_star_t_6*R_xy;
+        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
+            J_star_t_6*R_yy;
+        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
+            J_star_t_6*R_zy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
         const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
+        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
+        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
+        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
         const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
-        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
             J_star_t_5*R_xz;
-        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
             J_star_t_7*R_xz;
-        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_7*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
+        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2323,15 +2366,15 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdic
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_in_base_x;
-        s[13*w + k] = h_star_in_base_y;
-        s[14*w + k] = h_star_in_base_z;
-        s[15*w + k] = J_star_t_10;
-        s[16*w + k] = J_star_t_11;
-        s[17*w + k] = J_star_t_12;
-        s[18*w + k] = J_star_t_14;
-        s[19*w + k] = J_star_t_15;
-        s[20*w + k] = J_star_t_17;
+        s[12*w + k] = h_star_x;
+        s[13*w + k] = h_star_y;
+        s[14*w + k] = h_star_z;
+        s[15*w + k] = J_star_xx;
+        s[16*w + k] = J_star_xy;
+        s[17*w + k] = J_star_xz;
+        s[18*w + k] = J_star_yy;
+        s[19*w + k] = J_star_yz;
+        s[20*w + k] = J_star_zz;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2349,27 +2392,27 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -2387,318 +2430,317 @@ INLINE void M_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_n_m1_t_5 = upu_s_1*upu_s_2;
+        const real upu_n_m1_t_6 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_base_frame_xx*upu_n_m1_t_5 +
+            upu_base_frame_xy*upu_n_m1_t_6 + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_base_frame_yx*upu_n_m1_t_5 +
+            upu_base_frame_yy*upu_n_m1_t_6 + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_base_frame_zx*upu_n_m1_t_5 +
+            upu_base_frame_zy*upu_n_m1_t_6 + upu_base_frame_zz*upu_c_2;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+        const real upu_n_m1_x = axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y;
+        const real upu_n_m1_y = axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y;
+        const real upu_n_m1_z = axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
-        const real upu_w_1_t_4 = inv_upu_w_1_t_25*upu_n_c_z;
-        /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real upu_d_alpha_1_t = inv_upu_w_1_t_25*upu_s_2;
-        const real upu_d_alpha_1_t_2 = inv_upu_w_1_t_25*upu_c_2;
-        /* (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
-           3, less gravity */
-        const real upu_d_acc_3_t = upu_d_alpha_1_t_2*upu_root_2;
-        /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real upu_h_3_z = m->upu_h_3_z[i];
-        const real upu_d_phi_3_t = inv_upu_root_2*upu_h_3_z;
-        const real upu_h_3_y = m->upu_h_3_y[i];
-        const real upu_d_phi_3_t_2 = upu_d_alpha_1_t_2*upu_h_3_y;
-        /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real upu_J_group_2_xx = m->upu_J_group_2_xx[i];
-        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
-        const real upu_J_group_2_yy = m->upu_J_group_2_yy[i];
-        const real upu_h_3_x = m->upu_h_3_x[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_d_Gamma_1_z = upu_s_2*(upu_J_group_2_xx*upu_d_alpha_1_t -
-            upu_J_group_2_xy*upu_d_alpha_1_t_2 - upu_d_acc_3_t*upu_h_3_z) -
-            upu_c_2*(upu_J_group_2_xy*upu_d_alpha_1_t - upu_J_group_2_yy*upu_d_alpha_1_t_2 -
-            upu_d_acc_3_t*upu_h_3_x - upu_root_2*(upu_d_acc_3_t*upu_link3_mass +
-            upu_d_alpha_1_t_2*upu_h_3_x - upu_d_alpha_1_t*upu_h_3_z));
-        /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
-        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
-        const real upu_d_G_t = inv_upu_root_2*(upu_J_group_2_xz*upu_d_alpha_1_t -
-            upu_J_group_2_yz*upu_d_alpha_1_t_2 - upu_d_alpha_1_t*upu_h_3_y*upu_root_2);
-        /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real upu_J_group_2_zz = m->upu_J_group_2_zz[i];
-        const real upu_Q_t = inv_upu_root_2*(upu_h_3_x + inv_upu_root_2*upu_J_group_2_zz +
-            upu_root_2*(upu_link3_mass + inv_upu_root_2*upu_h_3_x)) - upu_link3_mass;
-        const real upu_Q_t_2 = R(0.5)*upu_Q_t;
-        const real upu_Q_t_3 = inv_upu_w_1_t_25*upu_d_Gamma_1_z - upu_link3_mass;
-        const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
-        const real upu_Q_t_5 = axis_x_upu_axes2_x*upu_d_phi_3_t +
-            axis_y_upu_axes2_in_base_x*upu_Q_t_2 + axis_z_upu_axes2_in_base_x*upu_d_G_t;
-        const real upu_Q_t_6 = axis_x_upu_axes2_y*upu_d_phi_3_t +
-            axis_y_upu_axes2_in_base_y*upu_Q_t_2 + axis_z_upu_axes2_in_base_y*upu_d_G_t;
-        const real upu_Q_t_7 = axis_x_upu_axes2_z*upu_d_phi_3_t +
-            axis_y_upu_axes2_in_base_z*upu_Q_t_2 + axis_z_upu_axes2_in_base_z*upu_d_G_t;
-        const real upu_Q_t_8 = axis_z_upu_axes2_in_base_x*upu_Q_t_4 -
-            axis_x_upu_axes2_x*upu_d_phi_3_t_2;
-        const real upu_Q_t_9 = axis_z_upu_axes2_in_base_y*upu_Q_t_4 -
-            axis_x_upu_axes2_y*upu_d_phi_3_t_2;
-        const real upu_Q_t_10 = axis_z_upu_axes2_in_base_z*upu_Q_t_4 -
-            axis_x_upu_axes2_z*upu_d_phi_3_t_2;
-        const real upu_Q_t_11 = axis_y_upu_axes2_in_base_x*upu_Q_t_5 +
-            axis_z_upu_axes2_in_base_x*upu_Q_t_8;
-        const real upu_Q_t_12 = 2*upu_Q_t_11 + upu_link3_mass;
-        const real upu_Q_t_13 = axis_y_upu_axes2_in_base_x*upu_Q_t_6 +
-            axis_y_upu_axes2_in_base_y*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_9 +
-            axis_z_upu_axes2_in_base_y*upu_Q_t_8;
-        const real upu_Q_t_14 = axis_y_upu_axes2_in_base_x*upu_Q_t_7 +
-            axis_y_upu_axes2_in_base_z*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_10 +
-            axis_z_upu_axes2_in_base_z*upu_Q_t_8;
-        const real upu_Q_t_15 = axis_y_upu_axes2_in_base_y*upu_Q_t_6 +
-            axis_z_upu_axes2_in_base_y*upu_Q_t_9;
-        const real upu_Q_t_16 = 2*upu_Q_t_15 + upu_link3_mass;
-        const real upu_Q_t_17 = axis_y_upu_axes2_in_base_y*upu_Q_t_7 +
-            axis_y_upu_axes2_in_base_z*upu_Q_t_6 + axis_z_upu_axes2_in_base_y*upu_Q_t_10 +
-            axis_z_upu_axes2_in_base_z*upu_Q_t_9;
-        const real upu_Q_t_18 = axis_y_upu_axes2_in_base_z*upu_Q_t_7 +
-            axis_z_upu_axes2_in_base_z*upu_Q_t_10;
-        const real upu_Q_t_19 = 2*upu_Q_t_18 + upu_link3_mass;
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
+        const real upu_w_1_in_axes2_z = 1/upu_w_1_t;
+        /* (upu-m1_w_1) moment part 1 of reciprocal wrench 1 */
+        const real upu_m1_w_1 = upu_n_c_t*upu_w_1_in_axes2_z;
         /* (upu-o_1) moment part of reciprocal wrench 1 */
-        const real upu_o_1_x = upu_end_p1_r3_y*upu_w_1_t_4;
-        const real upu_o_1_y = upu_end_p1_r3_x*upu_w_1_t_4;
+        const real upu_o_1_t = upu_end_p1_in_axes2_y*upu_m1_w_1;
+        const real upu_o_1_in_axes2_y = upu_m1_w_1*upu_n_m1_in_axes2_y;
         /* (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real upu_dalpha_alpha_1_xx = upu_o_1_x*upu_s_2;
-        const real upu_dalpha_alpha_1_xy = upu_o_1_y*upu_s_2;
-        const real upu_dalpha_alpha_1_yx = upu_c_2*upu_o_1_x;
-        const real upu_dalpha_alpha_1_yy = upu_c_2*upu_o_1_y;
+        const real upu_dalpha_alpha_1_t = upu_o_1_t*upu_s_2;
+        const real upu_dalpha_alpha_1_in_axes2_xy = upu_o_1_in_axes2_y*upu_s_2;
+        const real upu_dalpha_alpha_1_in_axes2_yx = -upu_c_2*upu_o_1_t;
+        const real upu_dalpha_alpha_1_t_2 = -upu_c_2*upu_o_1_in_axes2_y;
+        /* (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real upu_d_alpha_1_in_axes2_xz = upu_s_2*upu_w_1_in_axes2_z;
+        const real upu_d_alpha_1_t = -upu_c_2*upu_w_1_in_axes2_z;
         /* (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real upu_dalpha_acc_3_t = upu_dalpha_alpha_1_yx*upu_root_2;
-        const real upu_dalpha_acc_3_t_2 = upu_dalpha_alpha_1_yy*upu_root_2;
+        const real upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yx*upu_root_2;
+        const real upu_dalpha_acc_3_in_axes2_zy = upu_dalpha_alpha_1_t_2*upu_root_2;
+        /* (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
+           3, less gravity */
+        const real upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_root_2;
         /* (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
-        const real upu_dalpha_phi_3_t = upu_dalpha_alpha_1_yx*upu_h_3_y;
-        const real upu_dalpha_phi_3_t_2 = upu_dalpha_alpha_1_yy*upu_h_3_y;
+        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
+        const real upu_dalpha_phi_3_in_axes2_xx =
+            upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_y;
+        /* (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
+           about its reference point */
+        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
+        const real upu_d_phi_3_in_axes2_xy = inv_upu_root_2*upu_h_3_in_spec2_z;
         /* (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
            links' inertia and weight */
-        const real upu_dalpha_Gamma_1_x = upu_s_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_yx +
-            upu_dalpha_acc_3_t*upu_h_3_z - upu_J_group_2_xx*upu_dalpha_alpha_1_xx) -
-            upu_c_2*(upu_J_group_2_yy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_x -
-            upu_J_group_2_xy*upu_dalpha_alpha_1_xx - upu_root_2*(upu_dalpha_alpha_1_xx*upu_h_3_z -
-            upu_dalpha_acc_3_t*upu_link3_mass - upu_dalpha_alpha_1_yx*upu_h_3_x));
-        const real upu_dalpha_Gamma_1_y = upu_s_2*(upu_J_group_2_xx*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_xy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_z) -
-            upu_c_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_yy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_x -
-            upu_root_2*(upu_dalpha_acc_3_t_2*upu_link3_mass + upu_dalpha_alpha_1_yy*upu_h_3_x -
-            upu_dalpha_alpha_1_xy*upu_h_3_z));
+        const real upu_J_group_2_in_axes2_xx = m->upu_J_group_2_in_axes2_xx[i];
+        const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
+        const real upu_J_group_2_in_axes2_yy = m->upu_J_group_2_in_axes2_yy[i];
+        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_dalpha_Gamma_1_in_axes2_x =
+            upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
+            - upu_root_2*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z -
+            upu_dalpha_acc_3_t*upu_link3_mass -
+            upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_x)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
+            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t);
+        const real upu_dalpha_Gamma_1_in_axes2_y =
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_x -
+            upu_root_2*(upu_dalpha_acc_3_in_axes2_zy*upu_link3_mass +
+            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
+            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_z)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_z);
+        /* (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real upu_d_Gamma_1_in_axes2_z =
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
+            - upu_root_2*(upu_d_acc_3_in_axes2_zz*upu_link3_mass +
+            upu_d_alpha_1_t*upu_h_3_in_spec2_x - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
+            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z);
         /* (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real upu_dalpha_G_t = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_x;
-        const real upu_dalpha_G_t_2 = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_y;
-        const real upu_dalpha_G_t_3 = inv_upu_root_2*(upu_J_group_2_yz*upu_dalpha_alpha_1_yx +
-            upu_dalpha_alpha_1_xx*upu_h_3_y*upu_root_2 - upu_J_group_2_xz*upu_dalpha_alpha_1_xx);
-        const real upu_dalpha_G_t_4 = inv_upu_root_2*(upu_J_group_2_xz*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_yz*upu_dalpha_alpha_1_yy - upu_dalpha_alpha_1_xy*upu_h_3_y*upu_root_2);
-        /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real upu_dalpha_c_in_base_x = -axis_x_upu_axes2_x*upu_dalpha_phi_3_t -
-            axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t;
-        const real upu_dalpha_c_in_base_y = -axis_x_upu_axes2_y*upu_dalpha_phi_3_t -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t;
-        const real upu_dalpha_c_in_base_z = -axis_x_upu_axes2_z*upu_dalpha_phi_3_t -
-            axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t;
-        const real upu_dalpha_c_in_base_x_2 = axis_x_upu_axes2_x*upu_dalpha_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t_2;
-        const real upu_dalpha_c_in_base_y_2 = axis_x_upu_axes2_y*upu_dalpha_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t_2;
-        const real upu_dalpha_c_in_base_z_2 = axis_x_upu_axes2_z*upu_dalpha_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t_2;
-        /* (M_ta) coupling block of M */
-        const real upu_M_ta_t = upu_Q_t_13*upu_q_in_base_z;
-        const real upu_M_ta_t_2 = upu_Q_t_14*upu_q_in_base_y;
-        const real upu_M_ta_t_3 = upu_Q_t_17*upu_q_in_base_x;
-        const real upu_M_ta_t_4 = upu_M_ta_t + axis_x_upu_axes2_x*upu_dalpha_c_in_base_x +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_x_2 - upu_M_ta_t_2;
-        const real upu_M_ta_t_5 = upu_Q_t_12*upu_q_in_base_z -
-            axis_x_upu_axes2_y*upu_dalpha_c_in_base_x -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_x_2 - upu_Q_t_14*upu_q_in_base_x;
-        const real upu_M_ta_t_6 = axis_x_upu_axes2_z*upu_dalpha_c_in_base_x +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_x_2 + upu_Q_t_12*upu_q_in_base_y -
-            upu_Q_t_13*upu_q_in_base_x;
-        const real upu_M_ta_t_7 = axis_x_upu_axes2_x*upu_dalpha_c_in_base_y +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_y_2 + upu_Q_t_16*upu_q_in_base_z -
-            upu_Q_t_17*upu_q_in_base_y;
-        const real upu_M_ta_t_8 = upu_M_ta_t - upu_M_ta_t_3 -
-            axis_x_upu_axes2_y*upu_dalpha_c_in_base_y -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_y_2;
-        const real upu_M_ta_t_9 = axis_x_upu_axes2_z*upu_dalpha_c_in_base_y +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_y_2 + upu_Q_t_13*upu_q_in_base_y -
-            upu_Q_t_16*upu_q_in_base_x;
-        const real upu_M_ta_t_10 = axis_x_upu_axes2_x*upu_dalpha_c_in_base_z +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_z_2 + upu_Q_t_17*upu_q_in_base_z -
-            upu_Q_t_19*upu_q_in_base_y;
-        const real upu_M_ta_t_11 = upu_Q_t_14*upu_q_in_base_z -
-            axis_x_upu_axes2_y*upu_dalpha_c_in_base_z -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_z_2 - upu_Q_t_19*upu_q_in_base_x;
-        const real upu_M_ta_t_12 = upu_M_ta_t_3 - upu_M_ta_t_2 -
-            axis_x_upu_axes2_z*upu_dalpha_c_in_base_z -
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_z_2;
+        const real upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z;
+        const real upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z;
+        const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
+        const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
+        const real upu_dalpha_G_in_axes2_yx =
+            inv_upu_root_2*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_root_2 -
+            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t);
+        const real upu_dalpha_G_in_axes2_yy =
+            inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_y*upu_root_2);
+        /* (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real upu_d_G_in_axes2_yz =
+            inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
+            upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_root_2);
         /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all freedoms */
-        const real upu_dalpha_G_m1_t = upu_dalpha_Gamma_1_x*upu_w_1_t_4;
-        const real upu_dalpha_G_m1_t_2 = upu_dalpha_Gamma_1_y*upu_w_1_t_4;
+        const real upu_dalpha_G_m1_in_axes2_x = upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1;
+        const real upu_dalpha_G_m1_in_axes2_y = upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1;
+        const real upu_dalpha_G_m1_y = axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y;
+        const real upu_dalpha_G_m1_z = axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y;
         /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
            the leg's inertia and weight along all freedoms */
-        const real upu_d_G_m1_t = upu_c_2*upu_h_3_y*upu_w_1_t_4;
-        const real upu_d_G_m1_t_2 = upu_w_1_t_4*(upu_s_2*(inv_upu_root_2*upu_J_group_2_xz -
-            upu_h_3_y) - inv_upu_root_2*upu_J_group_2_yz*upu_c_2);
-        const real upu_d_G_m1_t_3 = upu_d_Gamma_1_z*upu_w_1_t_4;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
-            axis_x_upu_axes2_x*upu_end_p1_r3_y;
-        const real upu_n_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y;
-        const real upu_n_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y;
-        /* (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all freedoms */
-        const real upu_dalpha_G_m1_in_base_y = axis_x_upu_axes2_y*upu_dalpha_G_m1_t +
-            axis_y_upu_axes2_in_base_y*upu_dalpha_G_m1_t_2;
-        const real upu_dalpha_G_m1_in_base_z = axis_x_upu_axes2_z*upu_dalpha_G_m1_t +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_G_m1_t_2;
-        /* (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all freedoms */
-        const real upu_d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_x*upu_d_G_m1_t_3 - axis_x_upu_axes2_x*upu_d_G_m1_t;
-        const real upu_d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_y*upu_d_G_m1_t_3 - axis_x_upu_axes2_y*upu_d_G_m1_t;
-        const real upu_d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_z*upu_d_G_m1_t_3 - axis_x_upu_axes2_z*upu_d_G_m1_t;
+        const real upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1;
+        const real upu_d_G_m1_in_axes2_y =
+            upu_m1_w_1*(upu_s_2*(inv_upu_root_2*upu_J_group_2_in_axes2_xz - upu_h_3_in_spec2_y) +
+            inv_upu_root_2*upu_J_group_2_in_axes2_yz*upu_c_2);
+        const real upu_d_G_m1_in_axes2_z = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1;
+        const real upu_d_G_m1_x = axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x +
+            axis_y_upu_axes2_x*upu_d_G_m1_in_axes2_y + axis_z_upu_axes2_x*upu_d_G_m1_in_axes2_z;
+        const real upu_d_G_m1_y = axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x +
+            axis_y_upu_axes2_y*upu_d_G_m1_in_axes2_y + axis_z_upu_axes2_y*upu_d_G_m1_in_axes2_z;
+        const real upu_d_G_m1_z = axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x +
+            axis_y_upu_axes2_z*upu_d_G_m1_in_axes2_y + axis_z_upu_axes2_z*upu_d_G_m1_in_axes2_z;
         /* (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real upu_d_G_m_xx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_x;
-        const real upu_d_G_m_xy = upu_d_G_m1_in_base_y*upu_n_m1_in_base_x;
-        const real upu_d_G_m_xz = upu_d_G_m1_in_base_z*upu_n_m1_in_base_x;
-        const real upu_d_G_m_yx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_y;
+        const real upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x;
+        const real upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x;
+        const real upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x;
+        const real upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y;
+        /* (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real upu_dalpha_c_in_axes2_xy = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y;
+        /* (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y;
+        /* (upu-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real upu_J_group_2_in_axes2_zz = m->upu_J_group_2_in_axes2_zz[i];
+        const real upu_Q_t = inv_upu_root_2*(upu_h_3_in_spec2_x +
+            inv_upu_root_2*upu_J_group_2_in_axes2_zz + upu_root_2*(upu_link3_mass +
+            inv_upu_root_2*upu_h_3_in_spec2_x)) - upu_link3_mass;
+        const real upu_Q_t_2 = R(0.5)*upu_Q_t;
+        const real upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*upu_w_1_in_axes2_z - upu_link3_mass;
+        const real upu_Q_t_4 = R(0.5)*upu_Q_t_3;
+        const real upu_Q_t_5 = axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy +
+            axis_y_upu_axes2_x*upu_Q_t_2 + axis_z_upu_axes2_x*upu_d_G_in_axes2_yz;
+        const real upu_Q_t_6 = axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy +
+            axis_y_upu_axes2_y*upu_Q_t_2 + axis_z_upu_axes2_y*upu_d_G_in_axes2_yz;
+        const real upu_Q_t_7 = axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy +
+            axis_y_upu_axes2_z*upu_Q_t_2 + axis_z_upu_axes2_z*upu_d_G_in_axes2_yz;
+        const real upu_Q_t_8 = axis_z_upu_axes2_x*upu_Q_t_4 -
+            axis_x_upu_axes2_x*upu_d_c_in_axes2_xz;
+        const real upu_Q_t_9 = axis_z_upu_axes2_y*upu_Q_t_4 -
+            axis_x_upu_axes2_y*upu_d_c_in_axes2_xz;
+        const real upu_Q_t_10 = axis_z_upu_axes2_z*upu_Q_t_4 -
+            axis_x_upu_axes2_z*upu_d_c_in_axes2_xz;
+        const real upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_8;
+        const real upu_Q_xx = 2*upu_Q_t_11 + upu_link3_mass;
+        const real upu_Q_xy = axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 +
+            axis_z_upu_axes2_x*upu_Q_t_9 + axis_z_upu_axes2_y*upu_Q_t_8;
+        const real upu_Q_xz = axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
+            axis_z_upu_axes2_x*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_8;
+        const real upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + axis_z_upu_axes2_y*upu_Q_t_9;
+        const real upu_Q_yy = 2*upu_Q_t_12 + upu_link3_mass;
+        const real upu_Q_yz = axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
+            axis_z_upu_axes2_y*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_9;
+        const real upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + axis_z_upu_axes2_z*upu_Q_t_10;
+        const real upu_Q_zz = 2*upu_Q_t_13 + upu_link3_mass;
+        /* (M_ta) coupling block of M */
+        const real upu_M_ta_t = -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx;
+        const real upu_M_ta_t_2 = -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx;
+        const real upu_M_ta_t_3 = -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx;
+        const real upu_M_ta_t_4 = axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xy -
+            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy;
+        const real upu_M_ta_t_5 = axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xy -
+            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy;
+        const real upu_M_ta_t_6 = axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xy -
+            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy;
+        const real upu_M_ta_t_7 = upu_Q_xy*upu_q_z;
+        const real upu_M_ta_t_8 = upu_Q_xz*upu_q_y;
+        const real upu_M_ta_t_9 = upu_Q_yz*upu_q_x;
+        const real upu_M_ta_t_10 = upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
+            axis_y_upu_axes2_x*upu_M_ta_t_4;
+        const real upu_M_ta_t_11 = upu_Q_xx*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t -
+            axis_y_upu_axes2_y*upu_M_ta_t_4 - upu_Q_xz*upu_q_x;
+        const real upu_M_ta_t_12 = upu_Q_xy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t -
+            axis_y_upu_axes2_z*upu_M_ta_t_4 - upu_Q_xx*upu_q_y;
+        const real upu_M_ta_t_13 = upu_Q_yz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 -
+            axis_y_upu_axes2_x*upu_M_ta_t_5 - upu_Q_yy*upu_q_z;
+        const real upu_M_ta_t_14 = upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
+            axis_y_upu_axes2_y*upu_M_ta_t_5;
+        const real upu_M_ta_t_15 = upu_Q_yy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 -
+            axis_y_upu_axes2_z*upu_M_ta_t_5 - upu_Q_xy*upu_q_y;
+        const real upu_M_ta_t_16 = upu_Q_zz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 -
+            axis_y_upu_axes2_x*upu_M_ta_t_6 - upu_Q_yz*upu_q_z;
+        const real upu_M_ta_t_17 = upu_Q_xz*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 -
+            axis_y_upu_axes2_y*upu_M_ta_t_6 - upu_Q_zz*upu_q_x;
+        const real upu_M_ta_t_18 = upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
+            axis_y_upu_axes2_z*upu_M_ta_t_6;
         /* (M_aa) rotational block of M */
-        const real upu_M_aa_t = upu_M_ta_t_7*upu_q_in_base_z + upu_d_G_m_xz*upu_q_in_base_y +
-            upu_n_m1_in_base_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_t +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_G_m1_t_2) - upu_M_ta_t_10*upu_q_in_base_y -
-            upu_d_G_m_xy*upu_q_in_base_z;
-        const real upu_M_aa_t_2 = upu_M_ta_t_11*upu_q_in_base_y + upu_d_G_m_xx*upu_q_in_base_z +
-            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_x - upu_M_ta_t_8*upu_q_in_base_z -
-            upu_d_G_m_xz*upu_q_in_base_x;
-        const real upu_M_aa_t_3 = upu_M_ta_t_12*upu_q_in_base_y + upu_M_ta_t_9*upu_q_in_base_z +
-            upu_d_G_m_xy*upu_q_in_base_x + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_x -
-            upu_d_G_m_xx*upu_q_in_base_y;
-        const real upu_M_aa_t_4 = upu_M_ta_t_5*upu_q_in_base_z + upu_d_G_m_yx*upu_q_in_base_z +
-            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_y - upu_M_ta_t_11*upu_q_in_base_x -
-            upu_d_G_m1_in_base_z*upu_n_m1_in_base_y*upu_q_in_base_x;
-        const real upu_M_aa_t_5 = upu_M_ta_t_12*upu_q_in_base_x + upu_M_ta_t_6*upu_q_in_base_z +
-            upu_d_G_m_yx*upu_q_in_base_y - upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_y -
-            upu_d_G_m1_in_base_y*upu_n_m1_in_base_y*upu_q_in_base_x;
-        const real upu_M_aa_t_6 = upu_M_ta_t_6*upu_q_in_base_y +
-            upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_z +
-            upu_d_G_m1_in_base_y*upu_n_m1_in_base_z*upu_q_in_base_x - upu_M_ta_t_9*upu_q_in_base_x
-            - upu_d_G_m1_in_base_x*upu_n_m1_in_base_z*upu_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + upu_Q_t_12 : upu_Q_t_12;  /* total_upu_xx */
-        terms[1*count + k] = add ? terms[1*count + k] + upu_Q_t_13 : upu_Q_t_13;  /* total_upu_xy */
-        terms[2*count + k] = add ? terms[2*count + k] + upu_Q_t_14 : upu_Q_t_14;  /* total_upu_xz */
-        terms[3*count + k] = add ? terms[3*count + k] + upu_Q_t_16 : upu_Q_t_16;  /* total_upu_yy */
-        terms[4*count + k] = add ? terms[4*count + k] + upu_Q_t_17 : upu_Q_t_17;  /* total_upu_yz */
-        terms[5*count + k] = add ? terms[5*count + k] + upu_Q_t_19 : upu_Q_t_19;  /* total_upu_zz */
-        terms[6*count + k] = add ? terms[6*count + k] + upu_M_ta_t_4 : upu_M_ta_t_4;  /* total_upu_xx_2 */
-        terms[7*count + k] = add ? terms[7*count + k] + upu_M_ta_t_5 : upu_M_ta_t_5;  /* total_upu_xy_2 */
-        terms[8*count + k] = add ? terms[8*count + k] + upu_M_ta_t_6 : upu_M_ta_t_6;  /* total_upu_xz_2 */
-        terms[9*count + k] = add ? terms[9*count + k] + upu_M_ta_t_7 : upu_M_ta_t_7;  /* total_upu_yx */
-        terms[10*count + k] = add ? terms[10*count + k] + upu_M_ta_t_8 : upu_M_ta_t_8;  /* total_upu_yy_2 */
-        terms[11*count + k] = add ? terms[11*count + k] + upu_M_ta_t_9 : upu_M_ta_t_9;  /* total_upu_yz_2 */
-        terms[12*count + k] = add ? terms[12*count + k] + upu_M_ta_t_10 : upu_M_ta_t_10;  /* total_upu_zx */
-        terms[13*count + k] = add ? terms[13*count + k] + upu_M_ta_t_11 : upu_M_ta_t_11;  /* total_upu_zy */
-        terms[14*count + k] = add ? terms[14*count + k] + upu_M_ta_t_12 : upu_M_ta_t_12;  /* total_upu_zz_2 */
-        terms[15*count + k] = add ? terms[15*count + k] + upu_M_aa_t : upu_M_aa_t;  /* total_upu_xx_3 */
-        terms[16*count + k] = add ? terms[16*count + k] + upu_M_aa_t_2 : upu_M_aa_t_2;  /* total_upu_xy_3 */
-        terms[17*count + k] = add ? terms[17*count + k] + upu_M_aa_t_3 : upu_M_aa_t_3;  /* total_upu_xz_3 */
-        terms[18*count + k] = add ? terms[18*count + k] + upu_M_aa_t_4 : upu_M_aa_t_4;  /* total_upu_yy_3 */
-        terms[19*count + k] = add ? terms[19*count + k] + upu_M_aa_t_5 : upu_M_aa_t_5;  /* total_upu_yz_3 */
-        terms[20*count + k] = add ? terms[20*count + k] + upu_M_aa_t_6 : upu_M_aa_t_6;  /* total_upu_zz_3 */
+        const real upu_M_aa_t = upu_M_ta_t_16*upu_q_y + upu_d_G_m_xz*upu_q_y +
+            upu_n_m1_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_x*upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*upu_q_z -
+            upu_d_G_m_xy*upu_q_z;
+        const real upu_M_aa_t_2 = upu_M_ta_t_17*upu_q_y + upu_d_G_m_xx*upu_q_z +
+            upu_dalpha_G_m1_y*upu_n_m1_x - upu_M_ta_t_14*upu_q_z - upu_d_G_m_xz*upu_q_x;
+        const real upu_M_aa_t_3 = upu_M_ta_t_18*upu_q_y + upu_d_G_m_xy*upu_q_x +
+            upu_dalpha_G_m1_z*upu_n_m1_x - upu_M_ta_t_15*upu_q_z - upu_d_G_m_xx*upu_q_y;
+        const real upu_M_aa_t_4 = upu_M_ta_t_11*upu_q_z + upu_d_G_m_yx*upu_q_z +
+            upu_dalpha_G_m1_y*upu_n_m1_y - upu_M_ta_t_17*upu_q_x -
+            upu_d_G_m1_z*upu_n_m1_y*upu_q_x;
+        const real upu_M_aa_t_5 = upu_M_ta_t_12*upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y +
+            upu_d_G_m1_y*upu_n_m1_y*upu_q_x - upu_M_ta_t_18*upu_q_x - upu_d_G_m_yx*upu_q_y;
+        const real upu_M_aa_t_6 = upu_M_ta_t_15*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z +
+            upu_d_G_m1_y*upu_n_m1_z*upu_q_x - upu_M_ta_t_12*upu_q_y -
+            upu_d_G_m1_x*upu_n_m1_z*upu_q_y;
+        /* (M_tt) translational block of M */
+        terms[0*count + k] = add ? terms[0*count + k] + upu_Q_xx : upu_Q_xx;  /* M_tt_upu_xx */
+        terms[1*count + k] = add ? terms[1*count + k] + upu_Q_xy : upu_Q_xy;  /* M_tt_xy */
+        terms[2*count + k] = add ? terms[2*count + k] + upu_Q_xz : upu_Q_xz;  /* M_tt_xz */
+        terms[3*count + k] = add ? terms[3*count + k] + upu_Q_yy : upu_Q_yy;  /* M_tt_upu_yy */
+        terms[4*count + k] = add ? terms[4*count + k] + upu_Q_yz : upu_Q_yz;  /* M_tt_yz */
+        terms[5*count + k] = add ? terms[5*count + k] + upu_Q_zz : upu_Q_zz;  /* M_tt_upu_zz */
+        /* (M_ta) coupling block of M */
+        terms[6*count + k] = add ? terms[6*count + k] + upu_M_ta_t_10 : upu_M_ta_t_10;  /* M_ta_xx */
+        terms[7*count + k] = add ? terms[7*count + k] + upu_M_ta_t_11 : upu_M_ta_t_11;  /* M_ta_upu_xy */
+        terms[8*count + k] = add ? terms[8*count + k] + upu_M_ta_t_12 : upu_M_ta_t_12;  /* M_ta_upu_xz */
+        terms[9*count + k] = add ? terms[9*count + k] + upu_M_ta_t_13 : upu_M_ta_t_13;  /* M_ta_upu_yx */
+        terms[10*count + k] = add ? terms[10*count + k] + upu_M_ta_t_14 : upu_M_ta_t_14;  /* M_ta_yy */
+        terms[11*count + k] = add ? terms[11*count + k] + upu_M_ta_t_15 : upu_M_ta_t_15;  /* M_ta_upu_yz */
+        terms[12*count + k] = add ? terms[12*count + k] + upu_M_ta_t_16 : upu_M_ta_t_16;  /* M_ta_upu_zx */
+        terms[13*count + k] = add ? terms[13*count + k] + upu_M_ta_t_17 : upu_M_ta_t_17;  /* M_ta_upu_zy */
+        terms[14*count + k] = add ? terms[14*count + k] + upu_M_ta_t_18 : upu_M_ta_t_18;  /* M_ta_zz */
+        /* (M_aa) rotational block of M */
+        terms[15*count + k] = add ? terms[15*count + k] + upu_M_aa_t : upu_M_aa_t;  /* M_aa_upu_xx */
+        terms[16*count + k] = add ? terms[16*count + k] + upu_M_aa_t_2 : upu_M_aa_t_2;  /* M_aa_upu_xy */
+        terms[17*count + k] = add ? terms[17*count + k] + upu_M_aa_t_3 : upu_M_aa_t_3;  /* M_aa_upu_xz */
+        terms[18*count + k] = add ? terms[18*count + k] + upu_M_aa_t_4 : upu_M_aa_t_4;  /* M_aa_upu_yy */
+        terms[19*count + k] = add ? terms[19*count + k] + upu_M_aa_t_5 : upu_M_aa_t_5;  /* M_aa_upu_yz */
+        terms[20*count + k] = add ? terms[20*count + k] + upu_M_aa_t_6 : upu_M_aa_t_6;  /* M_aa_upu_zz */
         o[0*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
+            UNLESS(magnitude(upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t) >
             TOLERANCE*R(0.8));
     }
 }
@@ -2715,81 +2757,84 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 {
     for (size_t k = 0; k < w; ++k) {
         /* (M_tt) translational block of M */
+        const real M_tt_upu_xx = sums[0*w + k];
         const real platform_mass = m->platform_mass;
-        const real total_upu_xx = sums[0*w + k];
-        const real M_tt_xx = platform_mass + total_upu_xx;
-        const real total_upu_yy = sums[3*w + k];
-        const real M_tt_yy = platform_mass + total_upu_yy;
-        const real total_upu_zz = sums[5*w + k];
-        const real M_tt_zz = platform_mass + total_upu_zz;
+        const real M_tt_xx = M_tt_upu_xx + platform_mass;
+        const real M_tt_upu_yy = sums[3*w + k];
+        const real M_tt_yy = M_tt_upu_yy + platform_mass;
+        const real M_tt_upu_zz = sums[5*w + k];
+        const real M_tt_zz = M_tt_upu_zz + platform_mass;
         /* (M_ta) coupling block of M */
-        const real h_star_in_base_z = s[14*w + k];
-        const real total_upu_xy_2 = sums[7*w + k];
-        const real M_ta_xy = h_star_in_base_z + total_upu_xy_2;
-        const real h_star_in_base_y = s[13*w + k];
-        const real total_upu_xz_2 = sums[8*w + k];
-        const real M_ta_xz = -h_star_in_base_y - total_upu_xz_2;
-        const real total_upu_yx = sums[9*w + k];
-        const real M_ta_yx = -h_star_in_base_z - total_upu_yx;
-        const real h_star_in_base_x = s[12*w + k];
-        const real total_upu_yz_2 = sums[11*w + k];
-        const real M_ta_yz = h_star_in_base_x - total_upu_yz_2;
-        const real total_upu_zx = sums[12*w + k];
-        const real M_ta_zx = h_star_in_base_y - total_upu_zx;
-        const real total_upu_zy = sums[13*w + k];
-        const real M_ta_zy = total_upu_zy - h_star_in_base_x;
+        const real M_ta_upu_xy = sums[7*w + k];
+        const real h_star_z = s[14*w + k];
+        const real M_ta_xy = M_ta_upu_xy + h_star_z;
+        const real M_ta_upu_xz = sums[8*w + k];
+        const real h_star_y = s[13*w + k];
+        const real M_ta_xz = M_ta_upu_xz - h_star_y;
+        const real M_ta_upu_yx = sums[9*w + k];
+        const real M_ta_yx = M_ta_upu_yx - h_star_z;
+        const real M_ta_upu_yz = sums[11*w + k];
+        const real h_star_x = s[12*w + k];
+        const real M_ta_yz = M_ta_upu_yz + h_star_x;
+        const real M_ta_upu_zx = sums[12*w + k];
+        const real M_ta_zx = M_ta_upu_zx + h_star_y;
+        const real M_ta_upu_zy = sums[13*w + k];
+        const real M_ta_zy = M_ta_upu_zy - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_t_10 = s[15*w + k];
-        const real total_upu_xx_3 = sums[15*w + k];
-        const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
-        const real J_star_t_11 = s[16*w + k];
-        const real total_upu_xy_3 = sums[16*w + k];
-        const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
-        const real J_star_t_12 = s[17*w + k];
-        const real total_upu_xz_3 = sums[17*w + k];
-        const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
-        const real J_star_t_14 = s[18*w + k];
-        const real total_upu_yy_3 = sums[18*w + k];
-        const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
-        const real J_star_t_15 = s[19*w + k];
-        const real total_upu_yz_3 = sums[19*w + k];
-        const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
-        const real J_star_t_17 = s[20*w + k];
-        const real total_upu_zz_3 = sums[20*w + k];
-        const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
+        const real J_star_xx = s[15*w + k];
+        const real M_aa_upu_xx = sums[15*w + k];
+        const real M_aa_xx = J_star_xx + M_aa_upu_xx;
+        const real J_star_xy = s[16*w + k];
+        const real M_aa_upu_xy = sums[16*w + k];
+        const real M_aa_xy = J_star_xy + M_aa_upu_xy;
+        const real J_star_xz = s[17*w + k];
+        const real M_aa_upu_xz = sums[17*w + k];
+        const real M_aa_xz = J_star_xz + M_aa_upu_xz;
+        const real J_star_yy = s[18*w + k];
+        const real M_aa_upu_yy = sums[18*w + k];
+        const real M_aa_yy = J_star_yy + M_aa_upu_yy;
+        const real J_star_yz = s[19*w + k];
+        const real M_aa_upu_yz = sums[19*w + k];
+        const real M_aa_yz = J_star_yz + M_aa_upu_yz;
+        const real J_star_zz = s[20*w + k];
+        const real M_aa_upu_zz = sums[20*w + k];
+        const real M_aa_zz = J_star_zz + M_aa_upu_zz;
+        /* (M_tt) translational block of M */
         M[0*w + k] = M_tt_xx;
-        const real total_upu_xy = sums[1*w + k];
-        M[1*w + k] = total_upu_xy;
-        M[6*w + k] = total_upu_xy;
-        const real total_upu_xz = sums[2*w + k];
-        M[2*w + k] = total_upu_xz;
-        M[12*w + k] = total_upu_xz;
+        const real M_tt_xy = sums[1*w + k];
+        M[1*w + k] = M_tt_xy;
+        M[6*w + k] = M_tt_xy;
+        const real M_tt_xz = sums[2*w + k];
+        M[2*w + k] = M_tt_xz;
+        M[12*w + k] = M_tt_xz;
         M[7*w + k] = M_tt_yy;
-        const real total_upu_yz = sums[4*w + k];
-        M[8*w + k] = total_upu_yz;
-        M[13*w + k] = total_upu_yz;
+        const real M_tt_yz = sums[4*w + k];
+        M[8*w + k] = M_tt_yz;
+        M[13*w + k] = M_tt_yz;
         M[14*w + k] = M_tt_zz;
-        const real total_upu_xx_2 = sums[6*w + k];
-        M[3*w + k] = -total_upu_xx_2;
-        M[18*w + k] = -total_upu_xx_2;
+        /* (M_ta) coupling block of M */
+        const real M_ta_xx = sums[6*w + k];
+        M[3*w + k] = M_ta_xx;
+        M[18*w + k] = M_ta_xx;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        const real total_upu_yy_2 = sums[10*w + k];
-        M[10*w + k] = total_upu_yy_2;
-        M[25*w + k] = total_upu_yy_2;
+        const real M_ta_yy = sums[10*w + k];
+        M[10*w + k] = M_ta_yy;
+        M[25*w + k] = M_ta_yy;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        const real total_upu_zz_2 = sums[14*w + k];
-        M[17*w + k] = total_upu_zz_2;
-        M[32*w + k] = total_upu_zz_2;
+        const real M_ta_zz = sums[14*w + k];
+        M[17*w + k] = M_ta_zz;
+        M[32*w + k] = M_ta_zz;
+        /* (M_aa) rotational block of M */
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -2799,10 +2844,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[29*w + k] = M_aa_yz;
         M[34*w + k] = M_aa_yz;
         M[35*w + k] = M_aa_zz;
-        t->total[k] += (((M_tt_xx + total_upu_xy) + (total_upu_xz + (M_tt_yy + total_upu_yz))) +
-            ((M_tt_zz + total_upu_xx_2) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((total_upu_yy_2 +
-            M_ta_yz) + (M_ta_zx + (M_ta_zy + total_upu_zz_2))) + ((M_aa_xx + (M_aa_xy + M_aa_xz))
-            + (M_aa_yy + (M_aa_yz + M_aa_zz))));
+        t->total[k] += (((M_tt_xx + M_tt_xy) + (M_tt_xz + (M_tt_yy + M_tt_yz))) + ((M_tt_zz +
+            M_ta_xx) + (M_ta_xy + (M_ta_xz + M_ta_yx)))) + (((M_ta_yy + M_ta_yz) + (M_ta_zx +
+            (M_ta_zy + M_ta_zz))) + ((M_aa_xx + (M_aa_xy + M_aa_xz)) + (M_aa_yy + (M_aa_yz +
+            M_aa_zz))));
     }
 }
 
@@ -2885,16 +2930,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real V_5 = V[5*w + k];
         const real omega_z = V_5;
         /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
+        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
+        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
         const real Z_p_t = m->Z_p_t;
         const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
         const real Z_p_t_2 = m->Z_p_t_2;
@@ -2905,30 +2953,39 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
+            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
+            g_in_platform_z*h_star_in_platform_y;
+        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
+            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
+            g_in_platform_x*h_star_in_platform_z;
+        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
+            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
+            g_in_platform_y*h_star_in_platform_x;
+        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
+            R_xz*Z_q_in_platform_z;
+        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
+            R_yz*Z_q_in_platform_z;
+        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
+            R_zz*Z_q_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -2950,9 +3007,9 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s[18*w + k] = Z_p_x;
         s[19*w + k] = Z_p_y;
         s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_in_base_x;
-        s[22*w + k] = Z_q_in_base_y;
-        s[23*w + k] = Z_q_in_base_z;
+        s[21*w + k] = Z_q_x;
+        s[22*w + k] = Z_q_y;
+        s[23*w + k] = Z_q_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -2970,27 +3027,27 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -3008,255 +3065,271 @@ INLINE void Z_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
+        /* (upu-S_dot) velocity of the connection point */
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_S_dot_t = upu_s_1*upu_s_2;
+        const real upu_S_dot_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_S_dot_t*upu_base_frame_xx +
+            upu_S_dot_t_2*upu_base_frame_xy + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_S_dot_t*upu_base_frame_yx +
+            upu_S_dot_t_2*upu_base_frame_yy + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_S_dot_t*upu_base_frame_zx +
+            upu_S_dot_t_2*upu_base_frame_zy + upu_base_frame_zz*upu_c_2;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z;
+        const real upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_5;
+        const real upu_S_dot_in_axes2_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
-        /* (upu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
-        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
+        const real upu_w_1_in_axes2_z = 1/upu_w_1_t;
         /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real upu_eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
-            axis_x_upu_axes2_x*upu_end_p1_r3_y) +
-            omega_y*(axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y) +
-            omega_z*(axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y);
-        /* (upu-S_dot) velocity of the connection point */
-        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
-            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
-        /* (upu-qd_3) rate of joint 3 */
-        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
-        const real upu_qd_3_t_2 = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
-            upu_eta_1*upu_n_c_z);
+        const real upu_eta_1 = omega_x*(axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y) +
+            omega_y*(axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y) +
+            omega_z*(axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y);
+        /* (upu-qd_1) rate of joint 1 */
+        const real upu_qd_1 = upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x +
+            axis_z_upu_axes2_y*upu_S_dot_y + axis_z_upu_axes2_z*upu_S_dot_z +
+            upu_eta_1*upu_n_c_t);
+        /* (upu-qd_2) rate of joint 2 */
+        const real upu_qd_2 = inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x +
+            axis_y_upu_axes2_y*upu_S_dot_y + axis_y_upu_axes2_z*upu_S_dot_z);
         /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_t = upu_qd_3_t_2*upu_s_2;
-        const real upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2;
-        /* (upu-u_1) centripetal acceleration of the connection point */
-        const real upu_u_1_x = omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
-        const real upu_u_1_y = omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
-        const real upu_u_1_z = omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
-        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t;
-        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        const real upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2;
+        const real upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1;
         /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_t = upu_omega_1_t*upu_omega_1_t;
-        const real upu_W_2_t_2 = upu_omega_1_t_2*upu_omega_1_t_2;
-        const real upu_W_2_t_3 = upu_qd_3_t*upu_qd_3_t;
-        const real upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2;
+        const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2;
+        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
+        const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
+        /* (upu-u_1) centripetal acceleration of the connection point */
+        const real upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4;
+        const real upu_u_1_y = omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5;
+        const real upu_u_1_z = omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3;
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t = 2*upu_S_dot_tip_x;
-        const real upu_bias_t_2 = upu_bias_t*upu_qd_3_t;
-        const real upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2;
-        const real upu_bias_z = upu_bias_t_3 + 2*upu_root_2*upu_zeta_2_y;
+        const real upu_bias_t = 2*upu_S_dot_in_axes2_x;
+        const real upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y;
+        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2;
         /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real upu_rel_o_z = axis_z_upu_axes2_in_base_x*upu_u_1_x +
-            axis_z_upu_axes2_in_base_y*upu_u_1_y + axis_z_upu_axes2_in_base_z*upu_u_1_z -
-            upu_bias_z;
+        const real upu_rel_o_in_axes2_z = axis_z_upu_axes2_x*upu_u_1_x +
+            axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z - upu_bias_in_axes2_z;
         /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z;
-        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
-            - upu_end_p1_r3_y*upu_omega_tip_z;
+        const real upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t;
+        const real upu_omega_in_axes2_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y
+            + axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y
+            + axis_y_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_z = axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y
+            + axis_z_upu_axes2_z*omega_z;
+        const real upu_nd_m1_in_axes2_x = upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_z;
+        const real upu_nd_m1_in_axes2_y = upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
         /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y;
-        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
-            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
-        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
-        /* (upu-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real upu_qdd_3_o_t = axis_y_upu_axes2_in_base_x*upu_u_1_x +
-            axis_y_upu_axes2_in_base_y*upu_u_1_y + axis_y_upu_axes2_in_base_z*upu_u_1_z -
-            upu_bias_t_2;
-        const real upu_qdd_3_o_t_2 = inv_upu_root_2*upu_qdd_3_o_t;
-        const real upu_qdd_3_o_t_3 = inv_upu_w_1_t_25*(upu_rel_o_z + upu_n_c_z*upu_nu_1);
+        const real upu_nu_1_t = -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+            upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
+            upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+            upu_omega_in_axes2_x) - (upu_omega_in_axes2_z -
+            upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
+        const real upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t;
+        /* (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+        const real upu_qdd_1_o = upu_w_1_in_axes2_z*(upu_rel_o_in_axes2_z + upu_n_c_t*upu_nu_1);
         /* (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real upu_alpha_1_o_t = upu_qdd_3_o_t_3*upu_s_2;
-        const real upu_alpha_1_o_t_2 = upu_c_2*upu_qdd_3_o_t_3;
+        const real upu_alpha_1_o_in_axes2_x = upu_qdd_1_o*upu_s_2;
+        const real upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o;
         /* (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real upu_alpha_2_o_x = upu_alpha_1_o_t - upu_zeta_2_x;
-        const real upu_alpha_2_o_y = -upu_alpha_1_o_t_2 - upu_zeta_2_y;
+        const real upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x;
+        const real upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz;
         /* (upu-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real upu_B_2_o_xy = -2*upu_W_2_xy - upu_qdd_3_o_t_2;
-        const real upu_B_2_o_zx = upu_zeta_2_y - upu_alpha_2_o_y;
-        const real upu_B_2_o_zy = upu_alpha_2_o_x - upu_zeta_2_x;
+        const real upu_B_2_o_t = upu_bias_t*upu_qd_2;
+        const real upu_B_2_o_t_2 = axis_y_upu_axes2_x*upu_u_1_x + axis_y_upu_axes2_y*upu_u_1_y +
+            axis_y_upu_axes2_z*upu_u_1_z - upu_B_2_o_t;
+        const real upu_B_2_o_in_axes2_yx = inv_upu_root_2*upu_B_2_o_t_2;
+        const real upu_B_2_o_in_axes2_xy = 2*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx;
+        const real upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y;
+        const real upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x;
         /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real upu_g_r0_x = m->upu_g_r0_x[i];
-        const real upu_g_r0_y = m->upu_g_r0_y[i];
-        const real upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x;
-        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
-        const real upu_g_r0_z = m->upu_g_r0_z[i];
-        const real upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y;
-        const real upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2;
-        const real upu_acc_3_o_x = axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y +
-            axis_x_upu_axes2_z*upu_u_1_z - upu_g_r3_x;
-        const real upu_acc_3_o_y = upu_bias_t_2 + upu_qdd_3_o_t - upu_g_r3_y;
-        const real upu_acc_3_o_z = upu_bias_t_3 + upu_B_2_o_zx*upu_root_2 - upu_g_r1_x;
+        const real upu_acc_3_t = m->upu_acc_3_t[i];
+        const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
+        const real upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t;
+        const real upu_acc_3_o_t = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t;
+        const real upu_acc_3_t_3 = m->upu_acc_3_t_3[i];
+        const real upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_o_t*upu_c_2;
+        const real upu_g_in_axes2_y = upu_acc_3_o_t*upu_s_2 + upu_acc_3_t_3*upu_c_2;
+        const real upu_acc_3_o_in_axes2_x = axis_x_upu_axes2_x*upu_u_1_x +
+            axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z - upu_g_in_axes2_x;
+        const real upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y;
+        const real upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_root_2 - upu_bias_t_2 -
+            upu_g_in_axes2_z;
         /* (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real upu_h_3_x = m->upu_h_3_x[i];
-        const real upu_h_3_y = m->upu_h_3_y[i];
-        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
+        const real upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
+        const real upu_f_3_o_t_3 = upu_qd_2*upu_qd_2;
+        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
+        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
+        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
         const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_f_3_o_x = upu_acc_3_o_x*upu_link3_mass - upu_B_2_o_xy*upu_h_3_z -
-            upu_alpha_1_o_t_2*upu_h_3_y - upu_h_3_x*(upu_W_2_t_2 + upu_W_2_t_3);
-        const real upu_f_3_o_y = upu_acc_3_o_y*upu_link3_mass + upu_h_3_x*upu_qdd_3_o_t_2 +
-            upu_h_3_z*(upu_W_2_t + upu_W_2_t_3) - upu_alpha_1_o_t*upu_h_3_y;
-        const real upu_f_3_o_z = upu_B_2_o_zx*upu_h_3_x + upu_acc_3_o_z*upu_link3_mass -
-            upu_B_2_o_zy*upu_h_3_z - upu_h_3_y*(upu_W_2_t + upu_W_2_t_2);
+        const real upu_f_3_o_in_axes2_x = upu_acc_3_o_in_axes2_x*upu_link3_mass +
+            upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y - upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z
+            - upu_h_3_in_spec2_x*(upu_f_3_o_t_2 + upu_f_3_o_t_3);
+        const real upu_f_3_o_in_axes2_y = upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x +
+            upu_acc_3_o_in_axes2_y*upu_link3_mass + upu_h_3_in_spec2_z*(upu_f_3_o_t +
+            upu_f_3_o_t_3) - upu_alpha_1_o_in_axes2_x*upu_h_3_in_spec2_y;
+        const real upu_f_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x +
+            upu_acc_3_o_in_axes2_z*upu_link3_mass - upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z -
+            upu_h_3_in_spec2_y*(upu_f_3_o_t + upu_f_3_o_t_2);
         /* (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
-        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
-        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
-        const real upu_Sigma_2_yy = m->upu_Sigma_2_yy[i];
-        const real upu_Sigma_2_zz = m->upu_Sigma_2_zz[i];
-        const real upu_h_2_y = m->upu_h_2_y[i];
-        const real upu_h_2_z = m->upu_h_2_z[i];
-        const real upu_mu_2_o_x = upu_B_2_o_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_3_o_t_2 +
-            upu_J_group_2_yz*(upu_W_2_t_2 - upu_W_2_t_3) + upu_Sigma_2_zz*upu_alpha_1_o_t +
-            upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_o_zx*upu_J_group_2_xy -
-            upu_acc_3_o_y*upu_h_3_y - upu_acc_3_o_z*upu_h_3_z;
-        const real upu_Sigma_2_xx = m->upu_Sigma_2_xx[i];
-        const real upu_h_2_x = m->upu_h_2_x[i];
-        const real upu_mu_2_o_y = upu_B_2_o_zy*upu_J_group_2_xy + upu_acc_3_o_x*upu_h_3_y +
-            upu_g_r1_x*upu_h_2_x - upu_B_2_o_xy*upu_J_group_2_yz - upu_B_2_o_zx*upu_Sigma_2_xx -
-            upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_3) - upu_Sigma_2_zz*upu_alpha_1_o_t_2 -
-            upu_acc_3_o_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y;
-        const real upu_mu_2_o_z = upu_J_group_2_xy*(upu_W_2_t - upu_W_2_t_2) +
-            upu_J_group_2_xz*upu_alpha_1_o_t + upu_Sigma_2_xx*upu_qdd_3_o_t_2 +
-            upu_acc_3_o_x*upu_h_3_z + upu_acc_3_o_y*upu_h_3_x - upu_B_2_o_xy*upu_Sigma_2_yy -
-            upu_J_group_2_yz*upu_alpha_1_o_t_2 - upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x;
+        const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
+        const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
+        const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
+        const real upu_Sigma_2_in_axes2_yy = m->upu_Sigma_2_in_axes2_yy[i];
+        const real upu_Sigma_2_in_axes2_zz = m->upu_Sigma_2_in_axes2_zz[i];
+        const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
+        const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
+        const real upu_mu_2_o_in_axes2_x = upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+            upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_f_3_o_t_3) +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y
+            + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
+            upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
+            upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z;
+        const real upu_Sigma_2_in_axes2_xx = m->upu_Sigma_2_in_axes2_xx[i];
+        const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
+        const real upu_mu_2_o_in_axes2_y = upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
+            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
+            - upu_f_3_o_t_3) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x -
+            upu_g_in_axes2_x*upu_h_2_in_spec2_y;
+        const real upu_mu_2_o_in_axes2_z = upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
+            upu_J_group_2_in_axes2_xy*(upu_f_3_o_t - upu_f_3_o_t_2) +
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
+            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z
+            - upu_g_in_axes2_y*upu_h_2_in_spec2_x;
         /* (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real upu_N_2_o_y = upu_mu_2_o_y - upu_f_3_o_z*upu_root_2;
-        const real upu_N_2_o_r0_y = upu_mu_2_o_x*upu_s_2 - upu_N_2_o_y*upu_c_2;
+        const real upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_root_2;
+        const real upu_N_2_o_in_axes1_z = upu_N_2_o_in_axes2_y*upu_c_2 +
+            upu_mu_2_o_in_axes2_x*upu_s_2;
         /* (upu-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real upu_G_o_t = upu_f_3_o_y + inv_upu_root_2*upu_mu_2_o_z;
-        const real upu_G_o_t_2 = inv_upu_w_1_t_25*upu_N_2_o_r0_y;
-        const real upu_G_o_t_3 = inv_upu_w_1_t_25*upu_N_2_o_r0_y*upu_n_c_z;
-        /* (upu-U) velocity and gravity terms of the leg force */
-        const real upu_U_in_base_x = axis_x_upu_axes2_x*upu_f_3_o_x +
-            axis_y_upu_axes2_in_base_x*upu_G_o_t + axis_z_upu_axes2_in_base_x*upu_G_o_t_2;
-        const real upu_U_in_base_y = axis_x_upu_axes2_y*upu_f_3_o_x +
-            axis_y_upu_axes2_in_base_y*upu_G_o_t + axis_z_upu_axes2_in_base_y*upu_G_o_t_2;
-        const real upu_U_in_base_z = axis_x_upu_axes2_z*upu_f_3_o_x +
-            axis_y_upu_axes2_in_base_z*upu_G_o_t + axis_z_upu_axes2_in_base_z*upu_G_o_t_2;
+        const real upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y +
+            inv_upu_root_2*upu_mu_2_o_in_axes2_z;
+        const real upu_G_o_in_axes2_z = upu_N_2_o_in_axes1_z*upu_w_1_in_axes2_z;
+        /* (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
+           balances the leg's inertia and weight along all freedoms */
+        const real upu_G_m1_o = upu_N_2_o_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z;
         /* (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real upu_G_m_o_x = upu_G_o_t_3*upu_end_p1_r3_y;
-        const real upu_G_m_o_y = upu_G_o_t_3*upu_end_p1_r3_x;
+        const real upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y;
+        /* (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
+           actuation */
+        const real upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y;
+        /* (upu-U) velocity and gravity terms of the leg force */
+        const real upu_U_x = axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x +
+            axis_y_upu_axes2_x*upu_G_o_in_axes2_y + axis_z_upu_axes2_x*upu_G_o_in_axes2_z;
+        const real upu_U_y = axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x +
+            axis_y_upu_axes2_y*upu_G_o_in_axes2_y + axis_z_upu_axes2_y*upu_G_o_in_axes2_z;
+        const real upu_U_z = axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x +
+            axis_y_upu_axes2_z*upu_G_o_in_axes2_y + axis_z_upu_axes2_z*upu_G_o_in_axes2_z;
         /* (Z_a) rotational part of Z */
-        const real upu_Z_a_t = axis_y_upu_axes2_in_base_x*upu_G_m_o_y +
-            upu_U_in_base_z*upu_q_in_base_y - axis_x_upu_axes2_x*upu_G_m_o_x -
-            upu_U_in_base_y*upu_q_in_base_z;
-        const real upu_Z_a_t_2 = axis_y_upu_axes2_in_base_y*upu_G_m_o_y +
-            upu_U_in_base_x*upu_q_in_base_z - axis_x_upu_axes2_y*upu_G_m_o_x -
-            upu_U_in_base_z*upu_q_in_base_x;
-        const real upu_Z_a_t_3 = axis_y_upu_axes2_in_base_z*upu_G_m_o_y +
-            upu_U_in_base_y*upu_q_in_base_x - axis_x_upu_axes2_z*upu_G_m_o_x -
-            upu_U_in_base_x*upu_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + upu_U_in_base_x : upu_U_in_base_x;  /* total_upu_x */
-        terms[1*count + k] = add ? terms[1*count + k] + upu_U_in_base_y : upu_U_in_base_y;  /* total_upu_y */
-        terms[2*count + k] = add ? terms[2*count + k] + upu_U_in_base_z : upu_U_in_base_z;  /* total_upu_z */
-        terms[3*count + k] = add ? terms[3*count + k] + upu_Z_a_t : upu_Z_a_t;  /* total_upu_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + upu_Z_a_t_2 : upu_Z_a_t_2;  /* total_upu_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + upu_Z_a_t_3 : upu_Z_a_t_3;  /* total_upu_z_2 */
+        const real upu_Z_a_t = axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*upu_q_y -
+            axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*upu_q_z;
+        const real upu_Z_a_t_2 = axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*upu_q_z -
+            axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*upu_q_x;
+        const real upu_Z_a_t_3 = axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*upu_q_x -
+            axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*upu_q_y;
+        /* (Z_t) translational part of Z */
+        terms[0*count + k] = add ? terms[0*count + k] + upu_U_x : upu_U_x;  /* Z_t_upu_x */
+        terms[1*count + k] = add ? terms[1*count + k] + upu_U_y : upu_U_y;  /* Z_t_upu_y */
+        terms[2*count + k] = add ? terms[2*count + k] + upu_U_z : upu_U_z;  /* Z_t_upu_z */
+        /* (Z_a) rotational part of Z */
+        terms[3*count + k] = add ? terms[3*count + k] + upu_Z_a_t : upu_Z_a_t;  /* Z_a_upu_x */
+        terms[4*count + k] = add ? terms[4*count + k] + upu_Z_a_t_2 : upu_Z_a_t_2;  /* Z_a_upu_y */
+        terms[5*count + k] = add ? terms[5*count + k] + upu_Z_a_t_3 : upu_Z_a_t_3;  /* Z_a_upu_z */
         o[0*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
+            UNLESS(magnitude(upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t) >
             TOLERANCE*R(0.8));
     }
 }
@@ -3273,27 +3346,29 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
         const real Z_p_x = s[18*w + k];
-        const real total_upu_x = sums[0*w + k];
-        const real Z_t_x = Z_p_x + total_upu_x;
+        const real Z_t_upu_x = sums[0*w + k];
+        const real Z_t_x = Z_p_x + Z_t_upu_x;
         const real Z_p_y = s[19*w + k];
-        const real total_upu_y = sums[1*w + k];
-        const real Z_t_y = Z_p_y + total_upu_y;
+        const real Z_t_upu_y = sums[1*w + k];
+        const real Z_t_y = Z_p_y + Z_t_upu_y;
         const real Z_p_z = s[20*w + k];
-        const real total_upu_z = sums[2*w + k];
-        const real Z_t_z = Z_p_z + total_upu_z;
+        const real Z_t_upu_z = sums[2*w + k];
+        const real Z_t_z = Z_p_z + Z_t_upu_z;
         /* (Z_a) rotational part of Z */
-        const real Z_q_in_base_x = s[21*w + k];
-        const real total_upu_x_2 = sums[3*w + k];
-        const real Z_a_x = Z_q_in_base_x + total_upu_x_2;
-        const real Z_q_in_base_y = s[22*w + k];
-        const real total_upu_y_2 = sums[4*w + k];
-        const real Z_a_y = Z_q_in_base_y + total_upu_y_2;
-        const real Z_q_in_base_z = s[23*w + k];
-        const real total_upu_z_2 = sums[5*w + k];
-        const real Z_a_z = Z_q_in_base_z + total_upu_z_2;
+        const real Z_a_upu_x = sums[3*w + k];
+        const real Z_q_x = s[21*w + k];
+        const real Z_a_x = Z_a_upu_x + Z_q_x;
+        const real Z_a_upu_y = sums[4*w + k];
+        const real Z_q_y = s[22*w + k];
+        const real Z_a_y = Z_a_upu_y + Z_q_y;
+        const real Z_a_upu_z = sums[5*w + k];
+        const real Z_q_z = s[23*w + k];
+        const real Z_a_z = Z_a_upu_z + Z_q_z;
+        /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
         Z[1*w + k] = Z_t_y;
         Z[2*w + k] = Z_t_z;
+        /* (Z_a) rotational part of Z */
         Z[3*w + k] = Z_a_x;
         Z[4*w + k] = Z_a_y;
         Z[5*w + k] = Z_a_z;
@@ -3394,27 +3469,27 @@ INLINE void H_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -3432,63 +3507,59 @@ INLINE void H_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
+        /* (upu-w_3) force part of reciprocal wrench 3 */
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_w_3_t = upu_s_1*upu_s_2;
+        const real upu_w_3_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_base_frame_xx*upu_w_3_t +
+            upu_base_frame_xy*upu_w_3_t_2 + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_base_frame_yx*upu_w_3_t +
+            upu_base_frame_yy*upu_w_3_t_2 + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_base_frame_zx*upu_w_3_t +
+            upu_base_frame_zy*upu_w_3_t_2 + upu_base_frame_zz*upu_c_2;
+        const real upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real upu_w_3_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
         /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        const real upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y -
-            axis_x_upu_axes2_y*upu_q_in_base_z;
-        const real upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z -
-            axis_x_upu_axes2_z*upu_q_in_base_x;
-        const real upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x -
-            axis_x_upu_axes2_x*upu_q_in_base_y;
-        o[0*count + k] = axis_x_upu_axes2_x;
-        o[1*count + k] = axis_x_upu_axes2_y;
-        o[2*count + k] = axis_x_upu_axes2_z;
-        o[3*count + k] = upu_H_a_3_t;
-        o[4*count + k] = upu_H_a_3_t_2;
-        o[5*count + k] = upu_H_a_3_t_3;
-        o[7*count + k] = (axis_x_upu_axes2_x + (axis_x_upu_axes2_y + axis_x_upu_axes2_z)) +
-            (upu_H_a_3_t + (upu_H_a_3_t_2 + upu_H_a_3_t_3));
+        const real upu_H_a_3_x = upu_q_y*upu_w_3_z - upu_q_z*upu_w_3_y;
+        const real upu_H_a_3_y = upu_q_z*upu_w_3_x - upu_q_x*upu_w_3_z;
+        const real upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x;
+        /* (upu-w_3) force part of reciprocal wrench 3 */
+        o[0*count + k] = upu_w_3_x;
+        o[1*count + k] = upu_w_3_y;
+        o[2*count + k] = upu_w_3_z;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        o[3*count + k] = upu_H_a_3_x;
+        o[4*count + k] = upu_H_a_3_y;
+        o[5*count + k] = upu_H_a_3_z;
+        o[7*count + k] = (upu_w_3_x + (upu_w_3_y + upu_w_3_z)) + (upu_H_a_3_x + (upu_H_a_3_y +
+            upu_H_a_3_z));
         o[6*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8));
@@ -3597,27 +3668,27 @@ INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -3635,100 +3706,93 @@ INLINE void Hk_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_root_2*(-upu_c_2*upu_end_p1_r3_x -
-            upu_end_p1_r3_y*upu_s_2)/upu_volume_c_t;
-        /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_c_t = upu_root_2*(upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2)/upu_volume_c_t;
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t;
+        const real upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real upu_Hk_a_1_t = upu_s_1*upu_s_2;
+        const real upu_Hk_a_1_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_Hk_a_1_t*upu_base_frame_xx +
+            upu_Hk_a_1_t_2*upu_base_frame_xy + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_Hk_a_1_t*upu_base_frame_yx +
+            upu_Hk_a_1_t_2*upu_base_frame_yy + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_Hk_a_1_t*upu_base_frame_zx +
+            upu_Hk_a_1_t_2*upu_base_frame_zy + upu_base_frame_zz*upu_c_2;
+        const real upu_Hk_a_1_x = axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
+            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y) - upu_n_c_t_4*upu_q_y;
+        const real upu_Hk_a_1_y = axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
+            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z) - upu_n_c_t_2*upu_q_z;
+        const real upu_Hk_a_1_z = axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
+            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x) - upu_n_c_t_3*upu_q_x;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
-        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
-        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
+        o[0*count + k] = -upu_n_c_t_2;
+        o[1*count + k] = -upu_n_c_t_3;
+        o[2*count + k] = -upu_n_c_t_4;
         /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real upu_Hk_a_1_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x +
-            upu_n_c_t_2*upu_q_in_base_z -
-            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - upu_n_c_t_3*upu_q_in_base_y;
-        const real upu_Hk_a_1_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x +
-            upu_n_c_t_3*upu_q_in_base_x -
-            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - upu_n_c_t*upu_q_in_base_z;
-        const real upu_Hk_a_1_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x +
-            upu_n_c_t*upu_q_in_base_y -
-            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - upu_n_c_t_2*upu_q_in_base_x;
-        o[0*count + k] = -upu_n_c_t;
-        o[1*count + k] = -upu_n_c_t_2;
-        o[2*count + k] = -upu_n_c_t_3;
         o[3*count + k] = upu_Hk_a_1_x;
         o[4*count + k] = upu_Hk_a_1_y;
         o[5*count + k] = upu_Hk_a_1_z;
-        o[7*count + k] = (upu_n_c_t + (upu_n_c_t_2 + upu_n_c_t_3)) + (upu_Hk_a_1_x + (upu_Hk_a_1_y
-            + upu_Hk_a_1_z));
+        o[7*count + k] = (upu_n_c_t_2 + (upu_n_c_t_3 + upu_n_c_t_4)) + (upu_Hk_a_1_x +
+            (upu_Hk_a_1_y + upu_Hk_a_1_z));
         o[6*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
             UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8));
     }
 }
@@ -3854,27 +3918,27 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t leg, si
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -3892,149 +3956,151 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t w, size_t leg, si
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
+        /* (upu-S_dot) velocity of the connection point */
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_S_dot_t = upu_s_1*upu_s_2;
+        const real upu_S_dot_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_S_dot_t*upu_base_frame_xx +
+            upu_S_dot_t_2*upu_base_frame_xy + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_S_dot_t*upu_base_frame_yx +
+            upu_S_dot_t_2*upu_base_frame_yy + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_S_dot_t*upu_base_frame_zx +
+            upu_S_dot_t_2*upu_base_frame_zy + upu_base_frame_zz*upu_c_2;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z;
+        const real upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_5;
+        const real upu_S_dot_in_axes2_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        /* (upu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
-        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
         /* (upu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real upu_eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
-            axis_x_upu_axes2_x*upu_end_p1_r3_y) +
-            omega_y*(axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y) +
-            omega_z*(axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y);
-        /* (upu-S_dot) velocity of the connection point */
-        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
-            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
-        /* (upu-qd_3) rate of joint 3 */
-        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
-        const real upu_qd_3_t_2 = (axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
-            upu_eta_1*upu_n_c_z)/upu_w_1_t_3;
+        const real upu_eta_1 = omega_x*(axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y) +
+            omega_y*(axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y) +
+            omega_z*(axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y);
+        /* (upu-qd_1) rate of joint 1 */
+        const real upu_qd_1 = (axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z + upu_eta_1*upu_n_c_t)/upu_w_1_t;
+        /* (upu-qd_2) rate of joint 2 */
+        const real upu_qd_2 = inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x +
+            axis_y_upu_axes2_y*upu_S_dot_y + axis_y_upu_axes2_z*upu_S_dot_z);
         /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_t = upu_qd_3_t_2*upu_s_2;
-        const real upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2;
-        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        const real upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2;
+        const real upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1;
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_z = 2*upu_S_dot_tip_x*upu_omega_1_t_2 + 2*upu_root_2*upu_zeta_2_y;
+        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*upu_root_2 -
+            2*upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y;
         /* (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real upu_rel_o_z = axis_z_upu_axes2_in_base_x*(omega_y*upu_S_dot_t_3 -
-            omega_z*upu_S_dot_t_2) + axis_z_upu_axes2_in_base_y*(omega_z*upu_S_dot_t -
-            omega_x*upu_S_dot_t_3) + axis_z_upu_axes2_in_base_z*(omega_x*upu_S_dot_t_2 -
-            omega_y*upu_S_dot_t) - upu_bias_z;
+        const real upu_rel_o_in_axes2_z = axis_z_upu_axes2_x*(omega_y*upu_S_dot_t_5 -
+            omega_z*upu_S_dot_t_4) + axis_z_upu_axes2_y*(omega_z*upu_S_dot_t_3 -
+            omega_x*upu_S_dot_t_5) + axis_z_upu_axes2_z*(omega_x*upu_S_dot_t_4 -
+            omega_y*upu_S_dot_t_3) - upu_bias_in_axes2_z;
         /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z;
-        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
-            - upu_end_p1_r3_y*upu_omega_tip_z;
+        const real upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t;
+        const real upu_omega_in_axes2_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y
+            + axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y
+            + axis_y_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_z = axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y
+            + axis_z_upu_axes2_z*omega_z;
+        const real upu_nd_m1_in_axes2_x = upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_z;
+        const real upu_nd_m1_in_axes2_y = upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
         /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_end_p1_r3_y*upu_omega_1_t_2*upu_qd_3_t -
-            upu_end_p1_r3_x*upu_zeta_2_y;
-        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
-            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
-        const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
+        const real upu_nu_1_t = -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*upu_qd_2;
+        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y -
+            upu_omega_1_in_axes2_y) - upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+            upu_omega_in_axes2_x) - (upu_omega_in_axes2_z -
+            upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x);
+        const real upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t;
         /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real upu_gamma_c1 = upu_nu_1 - upu_n_c_z*upu_rel_o_z;
+        const real upu_gamma_c1 = upu_nu_1 - upu_n_c_t*upu_rel_o_in_axes2_z;
+        /* (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
+           */
         o[0*count + k] = upu_gamma_c1;
         o[2*count + k] = upu_gamma_c1;
         o[1*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
+            UNLESS(magnitude(upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t) >
             TOLERANCE*R(0.8));
     }
 }
@@ -4136,33 +4202,20 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real alpha_y = A_4;
         const real A_5 = A[5*w + k];
         const real alpha_z = A_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (W_p) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
         const real W_p_xy = omega_x*omega_y;
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (h_star) first moment about the platform origin */
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
+        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+            R_xz*h_star_in_platform_z;
+        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z;
+        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
         const real a_t_x = t_ddot_x - gravity_x;
@@ -4170,31 +4223,57 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
         const real a_t_z = t_ddot_z - gravity_z;
+        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
+        const real f_p_t = omega_x*omega_x;
+        const real f_p_t_2 = omega_y*omega_y;
+        const real f_p_t_3 = omega_z*omega_z;
         const real platform_mass = m->platform_mass;
-        const real f_p_x = a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (a_t) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real f_p_x = a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
+            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
+        const real f_p_y = a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
+            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
+            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
+            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
+            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
+            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
+        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
+            J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+        const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
+            J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+        const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
+            J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
+        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
+            R_xz*mu_p_in_platform_z;
+        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
+            R_yz*mu_p_in_platform_z;
+        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
+            R_zz*mu_p_in_platform_z;
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -4222,9 +4301,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s[24*w + k] = f_p_x;
         s[25*w + k] = f_p_y;
         s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_in_base_x;
-        s[28*w + k] = mu_p_in_base_y;
-        s[29*w + k] = mu_p_in_base_z;
+        s[27*w + k] = mu_p_x;
+        s[28*w + k] = mu_p_y;
+        s[29*w + k] = mu_p_z;
         t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
@@ -4242,27 +4321,27 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -4280,299 +4359,308 @@ INLINE void required_legs_upu(const prepared *m, size_t w, size_t leg, size_t le
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
+        /* (upu-S_dot) velocity of the connection point */
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_S_dot_t = upu_s_1*upu_s_2;
+        const real upu_S_dot_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_S_dot_t*upu_base_frame_xx +
+            upu_S_dot_t_2*upu_base_frame_xy + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_S_dot_t*upu_base_frame_yx +
+            upu_S_dot_t_2*upu_base_frame_yy + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_S_dot_t*upu_base_frame_zx +
+            upu_S_dot_t_2*upu_base_frame_zy + upu_base_frame_zz*upu_c_2;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z;
+        const real upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_5;
+        const real upu_S_dot_in_axes2_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t;
+        const real upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
-        /* (upu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
-        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
-        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
-            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
-        /* (upu-qd_3) rate of joint 3 */
-        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
-        /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_t = upu_qd_3_t*upu_qd_3_t;
-        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t = 2*upu_S_dot_tip_x;
-        const real upu_bias_t_2 = upu_bias_t*upu_qd_3_t;
-        /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real upu_g_r0_x = m->upu_g_r0_x[i];
-        const real upu_g_r0_y = m->upu_g_r0_y[i];
-        const real upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x;
-        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
-        const real upu_g_r0_z = m->upu_g_r0_z[i];
-        const real upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y;
-        const real upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2;
-        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        const real upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y -
-            axis_x_upu_axes2_y*upu_q_in_base_z;
-        const real upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z -
-            axis_x_upu_axes2_z*upu_q_in_base_x;
-        const real upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x -
-            axis_x_upu_axes2_x*upu_q_in_base_y;
-        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
-           out */
-        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
-        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
-        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real upu_Hk_a_1_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x +
-            upu_n_c_t_2*upu_q_in_base_z - axis_x_upu_axes2_x*upu_end_p1_r3_y -
-            upu_n_c_t_3*upu_q_in_base_y;
-        const real upu_Hk_a_1_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x +
-            upu_n_c_t_3*upu_q_in_base_x - axis_x_upu_axes2_y*upu_end_p1_r3_y -
-            upu_n_c_t*upu_q_in_base_z;
-        const real upu_Hk_a_1_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x +
-            upu_n_c_t*upu_q_in_base_y - axis_x_upu_axes2_z*upu_end_p1_r3_y -
-            upu_n_c_t_2*upu_q_in_base_x;
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
+        const real upu_w_1_in_axes2_z = 1/upu_w_1_t;
         /* (upu-qd_1) rate of joint 1 */
-        const real upu_qd_1_t = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
-            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y));
+        const real upu_omega_in_axes2_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y
+            + axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y
+            + axis_y_upu_axes2_z*omega_z;
+        const real upu_qd_1 = upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x +
+            axis_z_upu_axes2_y*upu_S_dot_y + axis_z_upu_axes2_z*upu_S_dot_z -
+            upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y));
+        /* (upu-qd_2) rate of joint 2 */
+        const real upu_qd_2 = inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x +
+            axis_y_upu_axes2_y*upu_S_dot_y + axis_y_upu_axes2_z*upu_S_dot_z);
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2;
+        const real upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1;
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2;
+        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
+        const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
         /* (upu-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y;
+        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z;
+        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x;
+        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x;
         /* (upu-S_ddot) acceleration of the connection point */
-        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
-        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
-        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
-        /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_t = upu_qd_1_t*upu_s_2;
-        const real upu_omega_1_t_2 = upu_c_2*upu_qd_1_t;
-        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t;
-        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
-        /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_t_2 = upu_omega_1_t*upu_omega_1_t;
-        const real upu_W_2_t_3 = upu_omega_1_t_2*upu_omega_1_t_2;
-        const real upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2;
+        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4;
+        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5;
+        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3;
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2;
-        const real upu_bias_z = upu_bias_t_3 + 2*upu_root_2*upu_zeta_2_y;
+        const real upu_bias_t = 2*upu_S_dot_in_axes2_x;
+        const real upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y;
+        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2;
         /* (upu-rel) acceleration of the connection point left to the joint accelerations */
-        const real upu_rel_z = axis_z_upu_axes2_in_base_x*upu_S_ddot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_ddot_y + axis_z_upu_axes2_in_base_z*upu_S_ddot_z -
-            upu_bias_z;
+        const real upu_rel_in_axes2_z = axis_z_upu_axes2_x*upu_S_ddot_x +
+            axis_z_upu_axes2_y*upu_S_ddot_y + axis_z_upu_axes2_z*upu_S_ddot_z -
+            upu_bias_in_axes2_z;
         /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z;
-        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
-            - upu_end_p1_r3_y*upu_omega_tip_z;
+        const real upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t;
+        const real upu_omega_in_axes2_z = axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y
+            + axis_z_upu_axes2_z*omega_z;
+        const real upu_nd_m1_in_axes2_x = upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_z;
+        const real upu_nd_m1_in_axes2_y = upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
         /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y;
-        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
-            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1_t = -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+            upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+            upu_omega_in_axes2_x) + (upu_omega_in_axes2_z -
+            upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
+            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y);
         const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
         /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real upu_etad_1_t = upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x +
+        const real upu_etad_1_t = upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x +
             alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
-            upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+            upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
+            alpha_z*axis_y_upu_axes2_z);
         const real upu_etad_1 = upu_nu_1 - upu_etad_1_t;
         /* (upu-qdd_1) acceleration of joint 1 */
-        const real upu_qdd_1_t = axis_y_upu_axes2_in_base_x*upu_S_ddot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_ddot_y + axis_y_upu_axes2_in_base_z*upu_S_ddot_z -
-            upu_bias_t_2;
-        const real upu_qdd_1_t_2 = inv_upu_root_2*upu_qdd_1_t;
-        const real upu_qdd_1_t_3 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z);
+        const real upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t);
         /* (upu-alpha_1) angular acceleration of link 1 */
-        const real upu_alpha_1_t = upu_qdd_1_t_3*upu_s_2;
-        const real upu_alpha_1_t_2 = upu_c_2*upu_qdd_1_t_3;
+        const real upu_alpha_1_in_axes2_x = upu_qdd_1*upu_s_2;
+        const real upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1;
         /* (upu-alpha_2) angular acceleration of link 2 */
-        const real upu_alpha_2_x = upu_alpha_1_t - upu_zeta_2_x;
-        const real upu_alpha_2_y = -upu_alpha_1_t_2 - upu_zeta_2_y;
+        const real upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x;
+        const real upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz;
         /* (upu-B_2) acceleration tensor of link 2 */
-        const real upu_B_2_xy = -2*upu_W_2_xy - upu_qdd_1_t_2;
-        const real upu_B_2_zx = upu_zeta_2_y - upu_alpha_2_y;
-        const real upu_B_2_zy = upu_alpha_2_x - upu_zeta_2_x;
+        const real upu_B_2_t = upu_bias_t*upu_qd_2;
+        const real upu_B_2_t_2 = axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y
+            + axis_y_upu_axes2_z*upu_S_ddot_z - upu_B_2_t;
+        const real upu_B_2_in_axes2_yx = inv_upu_root_2*upu_B_2_t_2;
+        const real upu_B_2_in_axes2_xy = 2*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx;
+        const real upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y;
+        const real upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x;
         /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real upu_acc_3_x = axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y
-            + axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_r3_x;
-        const real upu_acc_3_y = upu_bias_t_2 + upu_qdd_1_t - upu_g_r3_y;
-        const real upu_acc_3_z = upu_bias_t_3 + upu_B_2_zx*upu_root_2 - upu_g_r1_x;
+        const real upu_acc_3_t = m->upu_acc_3_t[i];
+        const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
+        const real upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t;
+        const real upu_acc_3_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t;
+        const real upu_acc_3_t_3 = m->upu_acc_3_t_3[i];
+        const real upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_t_4*upu_c_2;
+        const real upu_g_in_axes2_y = upu_acc_3_t_3*upu_c_2 + upu_acc_3_t_4*upu_s_2;
+        const real upu_acc_3_in_axes2_x = axis_x_upu_axes2_x*upu_S_ddot_x +
+            axis_x_upu_axes2_y*upu_S_ddot_y + axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_in_axes2_x;
+        const real upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y;
+        const real upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_root_2 - upu_bias_t_2 -
+            upu_g_in_axes2_z;
         /* (upu-f_3) inertia force of link 3 less its weight */
-        const real upu_h_3_x = m->upu_h_3_x[i];
-        const real upu_h_3_y = m->upu_h_3_y[i];
-        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_f_3_t = upu_qd_2*upu_qd_2;
+        const real upu_f_3_t_2 = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
+        const real upu_f_3_t_3 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
+        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
+        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
+        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
         const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_f_3_x = upu_acc_3_x*upu_link3_mass - upu_B_2_xy*upu_h_3_z -
-            upu_alpha_1_t_2*upu_h_3_y - upu_h_3_x*(upu_W_2_t + upu_W_2_t_3);
-        const real upu_f_3_y = upu_acc_3_y*upu_link3_mass + upu_h_3_x*upu_qdd_1_t_2 +
-            upu_h_3_z*(upu_W_2_t + upu_W_2_t_2) - upu_alpha_1_t*upu_h_3_y;
-        const real upu_f_3_z = upu_B_2_zx*upu_h_3_x + upu_acc_3_z*upu_link3_mass -
-            upu_B_2_zy*upu_h_3_z - upu_h_3_y*(upu_W_2_t_2 + upu_W_2_t_3);
+        const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*upu_link3_mass +
+            upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y - upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z -
+            upu_h_3_in_spec2_x*(upu_f_3_t + upu_f_3_t_3);
+        const real upu_f_3_in_axes2_y = upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x +
+            upu_acc_3_in_axes2_y*upu_link3_mass + upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2) -
+            upu_alpha_1_in_axes2_x*upu_h_3_in_spec2_y;
+        const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x +
+            upu_acc_3_in_axes2_z*upu_link3_mass - upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z -
+            upu_h_3_in_spec2_y*(upu_f_3_t_2 + upu_f_3_t_3);
         /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
-        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
-        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
-        const real upu_Sigma_2_yy = m->upu_Sigma_2_yy[i];
-        const real upu_Sigma_2_zz = m->upu_Sigma_2_zz[i];
-        const real upu_h_2_y = m->upu_h_2_y[i];
-        const real upu_h_2_z = m->upu_h_2_z[i];
-        const real upu_mu_2_x = upu_B_2_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_1_t_2 +
-            upu_Sigma_2_zz*upu_alpha_1_t + upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y -
-            upu_B_2_zx*upu_J_group_2_xy - upu_J_group_2_yz*(upu_W_2_t - upu_W_2_t_3) -
-            upu_acc_3_y*upu_h_3_y - upu_acc_3_z*upu_h_3_z;
-        const real upu_Sigma_2_xx = m->upu_Sigma_2_xx[i];
-        const real upu_h_2_x = m->upu_h_2_x[i];
-        const real upu_mu_2_y = upu_B_2_zy*upu_J_group_2_xy + upu_J_group_2_xz*(upu_W_2_t -
-            upu_W_2_t_2) + upu_acc_3_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x -
-            upu_B_2_xy*upu_J_group_2_yz - upu_B_2_zx*upu_Sigma_2_xx -
-            upu_Sigma_2_zz*upu_alpha_1_t_2 - upu_acc_3_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y;
-        const real upu_mu_2_z = upu_J_group_2_xy*(upu_W_2_t_2 - upu_W_2_t_3) +
-            upu_J_group_2_xz*upu_alpha_1_t + upu_Sigma_2_xx*upu_qdd_1_t_2 + upu_acc_3_x*upu_h_3_z
-            + upu_acc_3_y*upu_h_3_x - upu_B_2_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_t_2
-            - upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x;
+        const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
+        const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
+        const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
+        const real upu_Sigma_2_in_axes2_yy = m->upu_Sigma_2_in_axes2_yy[i];
+        const real upu_Sigma_2_in_axes2_zz = m->upu_Sigma_2_in_axes2_zz[i];
+        const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
+        const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
+        const real upu_mu_2_in_axes2_x = upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
+            upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
+            upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z;
+        const real upu_Sigma_2_in_axes2_xx = m->upu_Sigma_2_in_axes2_xx[i];
+        const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
+        const real upu_mu_2_in_axes2_y = upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy +
+            upu_J_group_2_in_axes2_xz*(upu_f_3_t - upu_f_3_t_2) +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
+            upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
+            - upu_g_in_axes2_x*upu_h_2_in_spec2_y;
+        const real upu_mu_2_in_axes2_z = upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
+            upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 - upu_f_3_t_3) +
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
+            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
+            upu_g_in_axes2_y*upu_h_2_in_spec2_x;
         /* (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real upu_N_2_y = upu_mu_2_y - upu_f_3_z*upu_root_2;
-        const real upu_N_2_r0_y = upu_mu_2_x*upu_s_2 - upu_N_2_y*upu_c_2;
+        const real upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_root_2;
+        const real upu_N_2_in_axes1_z = upu_N_2_in_axes2_y*upu_c_2 + upu_mu_2_in_axes2_x*upu_s_2;
         /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real upu_G_t = upu_f_3_y + inv_upu_root_2*upu_mu_2_z;
-        const real upu_G_t_2 = inv_upu_w_1_t_25*upu_N_2_r0_y;
-        const real upu_G_t_3 = inv_upu_w_1_t_25*upu_N_2_r0_y*upu_n_c_z;
-        /* (upu-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real upu_c_in_base_x = -axis_x_upu_axes2_x*upu_f_3_x -
-            axis_y_upu_axes2_in_base_x*upu_G_t - axis_z_upu_axes2_in_base_x*upu_G_t_2;
-        const real upu_c_in_base_y = -axis_x_upu_axes2_y*upu_f_3_x -
-            axis_y_upu_axes2_in_base_y*upu_G_t - axis_z_upu_axes2_in_base_y*upu_G_t_2;
-        const real upu_c_in_base_z = -axis_x_upu_axes2_z*upu_f_3_x -
-            axis_y_upu_axes2_in_base_z*upu_G_t - axis_z_upu_axes2_in_base_z*upu_G_t_2;
+        const real upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_root_2*upu_mu_2_in_axes2_z;
+        const real upu_G_in_axes2_z = upu_N_2_in_axes1_z*upu_w_1_in_axes2_z;
+        /* (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
+           freedoms */
+        const real upu_G_m1 = upu_N_2_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z;
         /* (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real upu_G_m_x = upu_G_t_3*upu_end_p1_r3_y;
-        const real upu_G_m_y = upu_G_t_3*upu_end_p1_r3_x;
+        const real upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y;
+        /* (upu-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real upu_c_x = -axis_x_upu_axes2_x*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_x*upu_G_in_axes2_y - axis_z_upu_axes2_x*upu_G_in_axes2_z;
+        const real upu_c_y = -axis_x_upu_axes2_y*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_y*upu_G_in_axes2_y - axis_z_upu_axes2_y*upu_G_in_axes2_z;
+        const real upu_c_z = -axis_x_upu_axes2_z*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_z*upu_G_in_axes2_y - axis_z_upu_axes2_z*upu_G_in_axes2_z;
+        /* (upu-c_m) moment of the leg on the platform without actuation */
+        const real upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y;
         /* (R_a) moment that actuators and external wrench must give */
-        const real upu_R_a_t = axis_x_upu_axes2_x*upu_G_m_x + upu_c_in_base_z*upu_q_in_base_y -
-            axis_y_upu_axes2_in_base_x*upu_G_m_y - upu_c_in_base_y*upu_q_in_base_z;
-        const real upu_R_a_t_2 = axis_x_upu_axes2_y*upu_G_m_x + upu_c_in_base_x*upu_q_in_base_z -
-            axis_y_upu_axes2_in_base_y*upu_G_m_y - upu_c_in_base_z*upu_q_in_base_x;
-        const real upu_R_a_t_3 = axis_x_upu_axes2_z*upu_G_m_x + upu_c_in_base_y*upu_q_in_base_x -
-            axis_y_upu_axes2_in_base_z*upu_G_m_y - upu_c_in_base_x*upu_q_in_base_y;
-        terms[0*count + k] = add ? terms[0*count + k] + upu_c_in_base_x : upu_c_in_base_x;  /* total_upu_x */
-        terms[1*count + k] = add ? terms[1*count + k] + upu_c_in_base_y : upu_c_in_base_y;  /* total_upu_y */
-        terms[2*count + k] = add ? terms[2*count + k] + upu_c_in_base_z : upu_c_in_base_z;  /* total_upu_z */
-        terms[3*count + k] = add ? terms[3*count + k] + upu_R_a_t : upu_R_a_t;  /* total_upu_x_2 */
-        terms[4*count + k] = add ? terms[4*count + k] + upu_R_a_t_2 : upu_R_a_t_2;  /* total_upu_y_2 */
-        terms[5*count + k] = add ? terms[5*count + k] + upu_R_a_t_3 : upu_R_a_t_3;  /* total_upu_z_2 */
+        const real upu_R_a_t = axis_y_upu_axes2_x*upu_G_m_in_axes2_y + upu_c_y*upu_q_z -
+            axis_x_upu_axes2_x*upu_c_m_in_axes2_x - upu_c_z*upu_q_y;
+        const real upu_R_a_t_2 = axis_y_upu_axes2_y*upu_G_m_in_axes2_y + upu_c_z*upu_q_x -
+            axis_x_upu_axes2_y*upu_c_m_in_axes2_x - upu_c_x*upu_q_z;
+        const real upu_R_a_t_3 = axis_y_upu_axes2_z*upu_G_m_in_axes2_y + upu_c_x*upu_q_y -
+            axis_x_upu_axes2_z*upu_c_m_in_axes2_x - upu_c_y*upu_q_x;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        const real upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z;
+        const real upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x;
+        const real upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real upu_Hk_a_1_x = axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y - upu_n_c_t_4*upu_q_y;
+        const real upu_Hk_a_1_y = axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y - upu_n_c_t_2*upu_q_z;
+        const real upu_Hk_a_1_z = axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y - upu_n_c_t_3*upu_q_x;
+        /* (R_t) force that actuators and external wrench must give */
+        terms[0*count + k] = add ? terms[0*count + k] + upu_c_x : upu_c_x;  /* R_t_t */
+        terms[1*count + k] = add ? terms[1*count + k] + upu_c_y : upu_c_y;  /* R_t_t_2 */
+        terms[2*count + k] = add ? terms[2*count + k] + upu_c_z : upu_c_z;  /* R_t_t_3 */
+        /* (R_a) moment that actuators and external wrench must give */
+        terms[3*count + k] = add ? terms[3*count + k] + upu_R_a_t : upu_R_a_t;  /* R_a_upu_x */
+        terms[4*count + k] = add ? terms[4*count + k] + upu_R_a_t_2 : upu_R_a_t_2;  /* R_a_upu_y */
+        terms[5*count + k] = add ? terms[5*count + k] + upu_R_a_t_3 : upu_R_a_t_3;  /* R_a_upu_z */
+        /* (upu-w_3) force part of reciprocal wrench 3 */
         o[0*count + k] = axis_x_upu_axes2_x;
         o[1*count + k] = axis_x_upu_axes2_y;
         o[2*count + k] = axis_x_upu_axes2_z;
-        o[3*count + k] = upu_H_a_3_t;
-        o[4*count + k] = upu_H_a_3_t_2;
-        o[5*count + k] = upu_H_a_3_t_3;
-        o[6*count + k] = -upu_n_c_t;
-        o[7*count + k] = -upu_n_c_t_2;
-        o[8*count + k] = -upu_n_c_t_3;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        o[3*count + k] = upu_H_a_3_x;
+        o[4*count + k] = upu_H_a_3_y;
+        o[5*count + k] = upu_H_a_3_z;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        o[6*count + k] = -upu_n_c_t_2;
+        o[7*count + k] = -upu_n_c_t_3;
+        o[8*count + k] = -upu_n_c_t_4;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = upu_Hk_a_1_x;
         o[10*count + k] = upu_Hk_a_1_y;
         o[11*count + k] = upu_Hk_a_1_z;
         o[12*count + k] = UNLESS(magnitude(upu_rho2_1) >
             TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_rho2_2) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-upu_volume_c_t) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_volume_c_t) >
             TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(upu_w_1_t_3) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(upu_w_1_t) > TOLERANCE*R(0.8));
     }
 }
 
@@ -4600,28 +4688,30 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 {
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
+        const real R_t_t = sums[0*w + k];
         const real f_p_x = s[24*w + k];
-        const real total_upu_x = sums[0*w + k];
-        const real R_t_x = f_p_x - total_upu_x;
+        const real R_t_x = f_p_x - R_t_t;
+        const real R_t_t_2 = sums[1*w + k];
         const real f_p_y = s[25*w + k];
-        const real total_upu_y = sums[1*w + k];
-        const real R_t_y = f_p_y - total_upu_y;
+        const real R_t_y = f_p_y - R_t_t_2;
+        const real R_t_t_3 = sums[2*w + k];
         const real f_p_z = s[26*w + k];
-        const real total_upu_z = sums[2*w + k];
-        const real R_t_z = f_p_z - total_upu_z;
+        const real R_t_z = f_p_z - R_t_t_3;
         /* (R_a) moment that actuators and external wrench must give */
-        const real mu_p_in_base_x = s[27*w + k];
-        const real total_upu_x_2 = sums[3*w + k];
-        const real R_a_x = mu_p_in_base_x - total_upu_x_2;
-        const real mu_p_in_base_y = s[28*w + k];
-        const real total_upu_y_2 = sums[4*w + k];
-        const real R_a_y = mu_p_in_base_y - total_upu_y_2;
-        const real mu_p_in_base_z = s[29*w + k];
-        const real total_upu_z_2 = sums[5*w + k];
-        const real R_a_z = mu_p_in_base_z - total_upu_z_2;
+        const real R_a_upu_x = sums[3*w + k];
+        const real mu_p_x = s[27*w + k];
+        const real R_a_x = R_a_upu_x + mu_p_x;
+        const real R_a_upu_y = sums[4*w + k];
+        const real mu_p_y = s[28*w + k];
+        const real R_a_y = R_a_upu_y + mu_p_y;
+        const real R_a_upu_z = sums[5*w + k];
+        const real mu_p_z = s[29*w + k];
+        const real R_a_z = R_a_upu_z + mu_p_z;
+        /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
         required[1*w + k] = R_t_y;
         required[2*w + k] = R_t_z;
+        /* (R_a) moment that actuators and external wrench must give */
         required[3*w + k] = R_a_x;
         required[4*w + k] = R_a_y;
         required[5*w + k] = R_a_z;
@@ -4758,27 +4848,29 @@ INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t w, size_t leg,
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-q_1) displacement of joint 1 */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_q_1 = angle(inv_upu_root_1*upu_py_1, inv_upu_root_1*upu_px_1);
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
-        /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_upu_root_2 = 1/upu_root_2;
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        /* (upu-q_1) displacement of joint 1 */
-        const real upu_q_1 = angle(inv_upu_root_1*upu_py_1, inv_upu_root_1*upu_px_1);
         /* (upu-q_2) displacement of joint 2 */
-        const real upu_q_2 = angle(-inv_upu_root_2*upu_xi_1_t, inv_upu_root_2*upu_root_1);
+        const real inv_upu_root_2 = 1/upu_root_2;
+        const real upu_q_2 = angle(-inv_upu_root_2*upu_xi_1_in_axes1_z,
+            inv_upu_root_2*upu_root_1);
+        /* (upu-q_1) displacement of joint 1 */
         o[0*count + k] = upu_q_1;
+        /* (upu-q_2) displacement of joint 2 */
         o[1*count + k] = upu_q_2;
+        /* (upu-q_3) displacement of joint 3 */
         o[2*count + k] = upu_root_2;
         o[4*count + k] = upu_q_1 + (upu_q_2 + upu_root_2);
         o[3*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
@@ -4904,27 +4996,27 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t leg, size_t
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -4942,109 +5034,109 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t w, size_t leg, size_t
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
+        /* (upu-S_dot) velocity of the connection point */
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_S_dot_t = upu_s_1*upu_s_2;
+        const real upu_S_dot_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_S_dot_t*upu_base_frame_xx +
+            upu_S_dot_t_2*upu_base_frame_xy + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_S_dot_t*upu_base_frame_yx +
+            upu_S_dot_t_2*upu_base_frame_yy + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_S_dot_t*upu_base_frame_zx +
+            upu_S_dot_t_2*upu_base_frame_zy + upu_base_frame_zz*upu_c_2;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + omega_y*upu_q_z - omega_z*upu_q_y;
+        const real omega_x = s[15*w + j];
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + omega_z*upu_q_x - omega_x*upu_q_z;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + omega_x*upu_q_y - omega_y*upu_q_x;
+        const real upu_S_dot_in_axes2_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        /* (upu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real upu_S_dot_x = t_dot_x + omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real upu_S_dot_y = t_dot_y + omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
-        const real t_dot_z = s[14*w + j];
-        const real upu_S_dot_z = t_dot_z + omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
-        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
-            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
-        /* (upu-qd_3) rate of joint 3 */
-        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
         /* (upu-qd_1) rate of joint 1 */
-        const real upu_qd_1_t = axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
-            upu_n_c_z*(upu_end_p1_r3_y*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z) - upu_end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z));
-        const real upu_qd_1_t_2 = upu_qd_1_t/upu_w_1_t_3;
-        o[0*count + k] = upu_qd_1_t_2;
-        o[1*count + k] = upu_qd_3_t;
-        o[2*count + k] = upu_S_dot_tip_x;
-        o[4*count + k] = upu_qd_1_t_2 + (upu_qd_3_t + upu_S_dot_tip_x);
+        const real upu_qd_1_t = axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z -
+            upu_n_c_t*(upu_end_p1_in_axes2_y*(axis_x_upu_axes2_x*omega_x +
+            axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
+            upu_n_m1_in_axes2_y*(axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
+            axis_y_upu_axes2_z*omega_z));
+        const real upu_qd_1 = upu_qd_1_t/upu_w_1_t;
+        /* (upu-qd_2) rate of joint 2 */
+        const real upu_qd_2 = inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x +
+            axis_y_upu_axes2_y*upu_S_dot_y + axis_y_upu_axes2_z*upu_S_dot_z);
+        /* (upu-qd_1) rate of joint 1 */
+        o[0*count + k] = upu_qd_1;
+        /* (upu-qd_2) rate of joint 2 */
+        o[1*count + k] = upu_qd_2;
+        /* (upu-qd_3) rate of joint 3 */
+        o[2*count + k] = upu_S_dot_in_axes2_x;
+        o[4*count + k] = upu_qd_1 + (upu_qd_2 + upu_S_dot_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
+            UNLESS(magnitude(upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t) >
             TOLERANCE*R(0.8));
     }
 }
@@ -5188,27 +5280,27 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t leg
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -5226,171 +5318,175 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t w, size_t leg
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
+        /* (upu-S_dot) velocity of the connection point */
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_S_dot_t = upu_s_1*upu_s_2;
+        const real upu_S_dot_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_S_dot_t*upu_base_frame_xx +
+            upu_S_dot_t_2*upu_base_frame_xy + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_S_dot_t*upu_base_frame_yx +
+            upu_S_dot_t_2*upu_base_frame_yy + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_S_dot_t*upu_base_frame_zx +
+            upu_S_dot_t_2*upu_base_frame_zy + upu_base_frame_zz*upu_c_2;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z;
+        const real upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_5;
+        const real upu_S_dot_in_axes2_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
-        /* (upu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
-        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
-        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
-            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
-        /* (upu-qd_3) rate of joint 3 */
-        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
-        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t = 2*upu_S_dot_tip_x;
-        /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
+        const real upu_w_1_in_axes2_z = 1/upu_w_1_t;
         /* (upu-qd_1) rate of joint 1 */
-        const real upu_qd_1_t = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
-            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y));
+        const real upu_omega_in_axes2_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y
+            + axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y
+            + axis_y_upu_axes2_z*omega_z;
+        const real upu_qd_1 = upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x +
+            axis_z_upu_axes2_y*upu_S_dot_y + axis_z_upu_axes2_z*upu_S_dot_z -
+            upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y));
+        /* (upu-qd_2) rate of joint 2 */
+        const real upu_qd_2 = inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x +
+            axis_y_upu_axes2_y*upu_S_dot_y + axis_y_upu_axes2_z*upu_S_dot_z);
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2;
+        const real upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1;
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
         /* (upu-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y;
+        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z;
+        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x;
+        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x;
         /* (upu-S_ddot) acceleration of the connection point */
-        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
-        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
-        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
-        /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_t = upu_qd_1_t*upu_s_2;
-        const real upu_omega_1_t_2 = upu_c_2*upu_qd_1_t;
-        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
+        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4;
+        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5;
+        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3;
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_z = upu_bias_t*upu_omega_1_t_2 + 2*upu_root_2*upu_zeta_2_y;
+        const real upu_bias_t = 2*upu_S_dot_in_axes2_x;
+        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*upu_root_2 -
+            upu_bias_t*upu_omega_1_in_axes2_y;
         /* (upu-rel) acceleration of the connection point left to the joint accelerations */
-        const real upu_rel_x = axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
-            axis_x_upu_axes2_z*upu_S_ddot_z + upu_root_2*(upu_omega_1_t_2*upu_omega_1_t_2 +
-            upu_qd_3_t*upu_qd_3_t);
-        const real upu_rel_z = axis_z_upu_axes2_in_base_x*upu_S_ddot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_ddot_y + axis_z_upu_axes2_in_base_z*upu_S_ddot_z -
-            upu_bias_z;
+        const real upu_rel_in_axes2_x = axis_x_upu_axes2_x*upu_S_ddot_x +
+            axis_x_upu_axes2_y*upu_S_ddot_y + axis_x_upu_axes2_z*upu_S_ddot_z +
+            upu_root_2*(upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y + upu_qd_2*upu_qd_2);
+        const real upu_rel_in_axes2_z = axis_z_upu_axes2_x*upu_S_ddot_x +
+            axis_z_upu_axes2_y*upu_S_ddot_y + axis_z_upu_axes2_z*upu_S_ddot_z -
+            upu_bias_in_axes2_z;
         /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z;
-        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
-            - upu_end_p1_r3_y*upu_omega_tip_z;
+        const real upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t;
+        const real upu_omega_in_axes2_z = axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y
+            + axis_z_upu_axes2_z*omega_z;
+        const real upu_nd_m1_in_axes2_x = upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_z;
+        const real upu_nd_m1_in_axes2_y = upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
         /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_end_p1_r3_y*upu_omega_1_t_2*upu_qd_3_t -
-            upu_end_p1_r3_x*upu_zeta_2_y;
-        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
-            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1_t = -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*upu_qd_2;
+        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+            upu_omega_in_axes2_x) + (upu_omega_in_axes2_z -
+            upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
+            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y);
         const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
         /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real upu_etad_1_t = upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x +
+        const real upu_etad_1_t = upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x +
             alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
-            upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+            upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
+            alpha_z*axis_y_upu_axes2_z);
         const real upu_etad_1 = upu_nu_1 - upu_etad_1_t;
         /* (upu-qdd_1) acceleration of joint 1 */
-        const real upu_qdd_1_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_ddot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_ddot_y + axis_y_upu_axes2_in_base_z*upu_S_ddot_z -
-            upu_bias_t*upu_qd_3_t) + upu_omega_1_t*upu_omega_1_t_2;
-        const real upu_qdd_1_t_2 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z);
-        o[0*count + k] = upu_qdd_1_t_2;
-        o[1*count + k] = upu_qdd_1_t;
-        o[2*count + k] = upu_rel_x;
-        o[4*count + k] = upu_qdd_1_t_2 + (upu_qdd_1_t + upu_rel_x);
+        const real upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t);
+        /* (upu-qdd_2) acceleration of joint 2 */
+        const real upu_qdd_2 = inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_ddot_x +
+            axis_y_upu_axes2_y*upu_S_ddot_y + axis_y_upu_axes2_z*upu_S_ddot_z -
+            upu_bias_t*upu_qd_2) - upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
+        /* (upu-qdd_1) acceleration of joint 1 */
+        o[0*count + k] = upu_qdd_1;
+        /* (upu-qdd_2) acceleration of joint 2 */
+        o[1*count + k] = upu_qdd_2;
+        /* (upu-qdd_3) acceleration of joint 3 */
+        o[2*count + k] = upu_rel_in_axes2_x;
+        o[4*count + k] = upu_qdd_1 + (upu_qdd_2 + upu_rel_in_axes2_x);
         o[3*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(-upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
-            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t_3) >
+            UNLESS(magnitude(upu_volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(upu_w_1_t) >
             TOLERANCE*R(0.8));
     }
 }
@@ -5531,27 +5627,26 @@ INLINE void constraints_legs_upu(const prepared *m, size_t w, size_t leg, size_t
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
+        /* (upu-phi_c1) angle by which the leg misses the platform, about a direction left out */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_phi_c1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_phi_c1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
         const real inv_upu_root_1 = 1/upu_root_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_x = inv_upu_root_1*upu_end_p1_r0_y*upu_px_1 -
-            inv_upu_root_1*upu_end_p1_r0_x*upu_py_1;
-        o[0*count + k] = -upu_end_p1_r1_x;
-        o[2*count + k] = upu_end_p1_r1_x;
+        const real upu_end_p1_in_axes2_z = inv_upu_root_1*upu_phi_c1_t_2*upu_px_1 -
+            inv_upu_root_1*upu_phi_c1_t*upu_py_1;
+        /* (upu-phi_c1) angle by which the leg misses the platform, about a direction left out */
+        o[0*count + k] = -upu_end_p1_in_axes2_z;
+        o[2*count + k] = upu_end_p1_in_axes2_z;
         o[1*count + k] = UNLESS(magnitude(upu_rho2_1) >
             TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
@@ -5693,27 +5788,27 @@ INLINE void legs_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -5731,286 +5826,299 @@ INLINE void legs_legs_upu(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
+        /* (upu-S_dot) velocity of the connection point */
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_S_dot_t = upu_s_1*upu_s_2;
+        const real upu_S_dot_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_S_dot_t*upu_base_frame_xx +
+            upu_S_dot_t_2*upu_base_frame_xy + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_S_dot_t*upu_base_frame_yx +
+            upu_S_dot_t_2*upu_base_frame_yy + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_S_dot_t*upu_base_frame_zx +
+            upu_S_dot_t_2*upu_base_frame_zy + upu_base_frame_zz*upu_c_2;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
+        const real omega_y = s[16*w + j];
+        const real omega_z = s[17*w + j];
+        const real upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y;
+        const real omega_x = s[15*w + j];
+        const real upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z;
+        const real upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x;
+        const real t_dot_x = s[12*w + j];
+        const real upu_S_dot_x = t_dot_x + upu_S_dot_t_3;
+        const real t_dot_y = s[13*w + j];
+        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_4;
+        const real t_dot_z = s[14*w + j];
+        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_5;
+        const real upu_S_dot_in_axes2_x = axis_x_upu_axes2_x*upu_S_dot_x +
+            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x;
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
+        const real upu_n_m1_x = axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y;
+        const real upu_n_m1_y = axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y;
+        const real upu_n_m1_z = axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t;
+        const real upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        const real inv_upu_w_1_t_25 = 1/upu_w_1_t_3;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_in_base_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x -
-            axis_x_upu_axes2_x*upu_end_p1_r3_y;
-        const real upu_n_m1_in_base_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y;
-        const real upu_n_m1_in_base_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y;
-        /* (upu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y;
-        const real omega_x = s[15*w + j];
-        const real upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z;
-        const real upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x;
-        const real t_dot_x = s[12*w + j];
-        const real upu_S_dot_x = t_dot_x + upu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real upu_S_dot_y = t_dot_y + upu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real upu_S_dot_z = t_dot_z + upu_S_dot_t_3;
-        const real upu_S_dot_tip_x = axis_x_upu_axes2_x*upu_S_dot_x +
-            axis_x_upu_axes2_y*upu_S_dot_y + axis_x_upu_axes2_z*upu_S_dot_z;
-        /* (upu-qd_3) rate of joint 3 */
-        const real upu_qd_3_t = inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z);
-        /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_t = upu_qd_3_t*upu_qd_3_t;
-        /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t = 2*upu_S_dot_tip_x;
-        const real upu_bias_t_2 = upu_bias_t*upu_qd_3_t;
-        /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real upu_omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real upu_omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real upu_g_r0_x = m->upu_g_r0_x[i];
-        const real upu_g_r0_y = m->upu_g_r0_y[i];
-        const real upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x;
-        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
-        const real upu_g_r0_z = m->upu_g_r0_z[i];
-        const real upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y;
-        const real upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2;
-        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
-           out */
-        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
-        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
-        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
+        const real upu_w_1_in_axes2_z = 1/upu_w_1_t;
         /* (upu-qd_1) rate of joint 1 */
-        const real upu_qd_1_t = inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
-            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y));
+        const real upu_omega_in_axes2_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y
+            + axis_x_upu_axes2_z*omega_z;
+        const real upu_omega_in_axes2_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y
+            + axis_y_upu_axes2_z*omega_z;
+        const real upu_qd_1 = upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x +
+            axis_z_upu_axes2_y*upu_S_dot_y + axis_z_upu_axes2_z*upu_S_dot_z -
+            upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y));
+        /* (upu-qd_2) rate of joint 2 */
+        const real upu_qd_2 = inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x +
+            axis_y_upu_axes2_y*upu_S_dot_y + axis_y_upu_axes2_z*upu_S_dot_z);
+        /* (upu-omega_1) angular velocity of link 1 */
+        const real upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2;
+        const real upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1;
+        /* (upu-W_2) centripetal tensor of link 2 */
+        const real upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2;
+        const real upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2;
+        const real upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y;
         /* (upu-a_p) acceleration of the connection point without its centripetal part */
         const real alpha_y = s[22*w + j];
         const real alpha_z = s[23*w + j];
         const real t_ddot_x = s[18*w + j];
-        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y;
+        const real upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y;
         const real alpha_x = s[21*w + j];
         const real t_ddot_y = s[19*w + j];
-        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z;
+        const real upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z;
         const real t_ddot_z = s[20*w + j];
-        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x;
+        const real upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x;
         /* (upu-S_ddot) acceleration of the connection point */
-        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2;
-        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3;
-        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t;
-        /* (upu-omega_1) angular velocity of link 1 */
-        const real upu_omega_1_t = upu_qd_1_t*upu_s_2;
-        const real upu_omega_1_t_2 = upu_c_2*upu_qd_1_t;
-        /* (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t;
-        const real upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t;
-        /* (upu-W_2) centripetal tensor of link 2 */
-        const real upu_W_2_t_2 = upu_omega_1_t*upu_omega_1_t;
-        const real upu_W_2_t_3 = upu_omega_1_t_2*upu_omega_1_t_2;
-        const real upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2;
+        const real upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4;
+        const real upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5;
+        const real upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3;
         /* (upu-bias) acceleration of the connection point at zero joint accelerations */
-        const real upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2;
-        const real upu_bias_z = upu_bias_t_3 + 2*upu_root_2*upu_zeta_2_y;
+        const real upu_bias_t = 2*upu_S_dot_in_axes2_x;
+        const real upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y;
+        const real upu_bias_in_axes2_z = 2*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2;
         /* (upu-rel) acceleration of the connection point left to the joint accelerations */
-        const real upu_rel_z = axis_z_upu_axes2_in_base_x*upu_S_ddot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_ddot_y + axis_z_upu_axes2_in_base_z*upu_S_ddot_z -
-            upu_bias_z;
+        const real upu_rel_in_axes2_z = axis_z_upu_axes2_x*upu_S_ddot_x +
+            axis_z_upu_axes2_y*upu_S_ddot_y + axis_z_upu_axes2_z*upu_S_ddot_z -
+            upu_bias_in_axes2_z;
         /* (upu-nd_m1) rate of moment direction 1 */
-        const real upu_nd_m1_x = upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z;
-        const real upu_nd_m1_y = upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y
-            - upu_end_p1_r3_y*upu_omega_tip_z;
+        const real upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t;
+        const real upu_omega_in_axes2_z = axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y
+            + axis_z_upu_axes2_z*omega_z;
+        const real upu_nd_m1_in_axes2_x = upu_end_p1_in_axes2_z*upu_omega_in_axes2_x -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_z;
+        const real upu_nd_m1_in_axes2_y = upu_end_p1_in_axes2_z*upu_omega_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y;
         /* (upu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y;
-        const real upu_nu_1_t_2 = upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z
-            - upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y);
+        const real upu_nu_1_t = -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+            upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y;
+        const real upu_nu_1_t_2 = upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x -
+            upu_omega_in_axes2_x) + (upu_omega_in_axes2_z -
+            upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
+            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y);
         const real upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2;
         /* (upu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real upu_etad_1_t = upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x +
+        const real upu_etad_1_t = upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x +
             alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
-            upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+            upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
+            alpha_z*axis_y_upu_axes2_z);
         const real upu_etad_1 = upu_nu_1 - upu_etad_1_t;
         /* (upu-qdd_1) acceleration of joint 1 */
-        const real upu_qdd_1_t = axis_y_upu_axes2_in_base_x*upu_S_ddot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_ddot_y + axis_y_upu_axes2_in_base_z*upu_S_ddot_z -
-            upu_bias_t_2;
-        const real upu_qdd_1_t_2 = inv_upu_root_2*upu_qdd_1_t;
-        const real upu_qdd_1_t_3 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z);
+        const real upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t);
         /* (upu-alpha_1) angular acceleration of link 1 */
-        const real upu_alpha_1_t = upu_qdd_1_t_3*upu_s_2;
-        const real upu_alpha_1_t_2 = upu_c_2*upu_qdd_1_t_3;
+        const real upu_alpha_1_in_axes2_x = upu_qdd_1*upu_s_2;
+        const real upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1;
         /* (upu-alpha_2) angular acceleration of link 2 */
-        const real upu_alpha_2_x = upu_alpha_1_t - upu_zeta_2_x;
-        const real upu_alpha_2_y = -upu_alpha_1_t_2 - upu_zeta_2_y;
+        const real upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x;
+        const real upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz;
         /* (upu-B_2) acceleration tensor of link 2 */
-        const real upu_B_2_xy = -2*upu_W_2_xy - upu_qdd_1_t_2;
-        const real upu_B_2_zx = upu_zeta_2_y - upu_alpha_2_y;
-        const real upu_B_2_zy = upu_alpha_2_x - upu_zeta_2_x;
+        const real upu_B_2_t = upu_bias_t*upu_qd_2;
+        const real upu_B_2_t_2 = axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y
+            + axis_y_upu_axes2_z*upu_S_ddot_z - upu_B_2_t;
+        const real upu_B_2_in_axes2_yx = inv_upu_root_2*upu_B_2_t_2;
+        const real upu_B_2_in_axes2_xy = 2*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx;
+        const real upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y;
+        const real upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x;
         /* (upu-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real upu_acc_3_x = axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y
-            + axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_r3_x;
-        const real upu_acc_3_y = upu_bias_t_2 + upu_qdd_1_t - upu_g_r3_y;
-        const real upu_acc_3_z = upu_bias_t_3 + upu_B_2_zx*upu_root_2 - upu_g_r1_x;
+        const real upu_acc_3_t = m->upu_acc_3_t[i];
+        const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
+        const real upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t;
+        const real upu_acc_3_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t;
+        const real upu_acc_3_t_3 = m->upu_acc_3_t_3[i];
+        const real upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_t_4*upu_c_2;
+        const real upu_g_in_axes2_y = upu_acc_3_t_3*upu_c_2 + upu_acc_3_t_4*upu_s_2;
+        const real upu_acc_3_in_axes2_x = axis_x_upu_axes2_x*upu_S_ddot_x +
+            axis_x_upu_axes2_y*upu_S_ddot_y + axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_in_axes2_x;
+        const real upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y;
+        const real upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_root_2 - upu_bias_t_2 -
+            upu_g_in_axes2_z;
         /* (upu-f_3) inertia force of link 3 less its weight */
-        const real upu_h_3_x = m->upu_h_3_x[i];
-        const real upu_h_3_y = m->upu_h_3_y[i];
-        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_f_3_t = upu_qd_2*upu_qd_2;
+        const real upu_f_3_t_2 = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x;
+        const real upu_f_3_t_3 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y;
+        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
+        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
+        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
         const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_f_3_x = upu_acc_3_x*upu_link3_mass - upu_B_2_xy*upu_h_3_z -
-            upu_alpha_1_t_2*upu_h_3_y - upu_h_3_x*(upu_W_2_t + upu_W_2_t_3);
-        const real upu_f_3_y = upu_acc_3_y*upu_link3_mass + upu_h_3_x*upu_qdd_1_t_2 +
-            upu_h_3_z*(upu_W_2_t + upu_W_2_t_2) - upu_alpha_1_t*upu_h_3_y;
-        const real upu_f_3_z = upu_B_2_zx*upu_h_3_x + upu_acc_3_z*upu_link3_mass -
-            upu_B_2_zy*upu_h_3_z - upu_h_3_y*(upu_W_2_t_2 + upu_W_2_t_3);
+        const real upu_f_3_in_axes2_x = upu_acc_3_in_axes2_x*upu_link3_mass +
+            upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y - upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z -
+            upu_h_3_in_spec2_x*(upu_f_3_t + upu_f_3_t_3);
+        const real upu_f_3_in_axes2_y = upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x +
+            upu_acc_3_in_axes2_y*upu_link3_mass + upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2) -
+            upu_alpha_1_in_axes2_x*upu_h_3_in_spec2_y;
+        const real upu_f_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x +
+            upu_acc_3_in_axes2_z*upu_link3_mass - upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z -
+            upu_h_3_in_spec2_y*(upu_f_3_t_2 + upu_f_3_t_3);
         /* (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real upu_J_group_2_xy = m->upu_J_group_2_xy[i];
-        const real upu_J_group_2_xz = m->upu_J_group_2_xz[i];
-        const real upu_J_group_2_yz = m->upu_J_group_2_yz[i];
-        const real upu_Sigma_2_yy = m->upu_Sigma_2_yy[i];
-        const real upu_Sigma_2_zz = m->upu_Sigma_2_zz[i];
-        const real upu_h_2_y = m->upu_h_2_y[i];
-        const real upu_h_2_z = m->upu_h_2_z[i];
-        const real upu_mu_2_x = upu_B_2_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_1_t_2 +
-            upu_Sigma_2_zz*upu_alpha_1_t + upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y -
-            upu_B_2_zx*upu_J_group_2_xy - upu_J_group_2_yz*(upu_W_2_t - upu_W_2_t_3) -
-            upu_acc_3_y*upu_h_3_y - upu_acc_3_z*upu_h_3_z;
-        const real upu_Sigma_2_xx = m->upu_Sigma_2_xx[i];
-        const real upu_h_2_x = m->upu_h_2_x[i];
-        const real upu_mu_2_y = upu_B_2_zy*upu_J_group_2_xy + upu_J_group_2_xz*(upu_W_2_t -
-            upu_W_2_t_2) + upu_acc_3_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x -
-            upu_B_2_xy*upu_J_group_2_yz - upu_B_2_zx*upu_Sigma_2_xx -
-            upu_Sigma_2_zz*upu_alpha_1_t_2 - upu_acc_3_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y;
-        const real upu_mu_2_z = upu_J_group_2_xy*(upu_W_2_t_2 - upu_W_2_t_3) +
-            upu_J_group_2_xz*upu_alpha_1_t + upu_Sigma_2_xx*upu_qdd_1_t_2 + upu_acc_3_x*upu_h_3_z
-            + upu_acc_3_y*upu_h_3_x - upu_B_2_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_t_2
-            - upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x;
+        const real upu_J_group_2_in_axes2_xy = m->upu_J_group_2_in_axes2_xy[i];
+        const real upu_J_group_2_in_axes2_xz = m->upu_J_group_2_in_axes2_xz[i];
+        const real upu_J_group_2_in_axes2_yz = m->upu_J_group_2_in_axes2_yz[i];
+        const real upu_Sigma_2_in_axes2_yy = m->upu_Sigma_2_in_axes2_yy[i];
+        const real upu_Sigma_2_in_axes2_zz = m->upu_Sigma_2_in_axes2_zz[i];
+        const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
+        const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
+        const real upu_mu_2_in_axes2_x = upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
+            upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
+            upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z;
+        const real upu_Sigma_2_in_axes2_xx = m->upu_Sigma_2_in_axes2_xx[i];
+        const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
+        const real upu_mu_2_in_axes2_y = upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy +
+            upu_J_group_2_in_axes2_xz*(upu_f_3_t - upu_f_3_t_2) +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
+            upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
+            - upu_g_in_axes2_x*upu_h_2_in_spec2_y;
+        const real upu_mu_2_in_axes2_z = upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx +
+            upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 - upu_f_3_t_3) +
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
+            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
+            upu_g_in_axes2_y*upu_h_2_in_spec2_x;
         /* (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real upu_N_2_y = upu_mu_2_y - upu_f_3_z*upu_root_2;
-        const real upu_N_2_r0_y = upu_mu_2_x*upu_s_2 - upu_N_2_y*upu_c_2;
+        const real upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_root_2;
+        const real upu_N_2_in_axes1_z = upu_N_2_in_axes2_y*upu_c_2 + upu_mu_2_in_axes2_x*upu_s_2;
         /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real upu_G_t = upu_f_3_y + inv_upu_root_2*upu_mu_2_z;
-        const real upu_G_t_2 = inv_upu_w_1_t_25*upu_N_2_r0_y;
-        const real upu_G_t_3 = inv_upu_w_1_t_25*upu_N_2_r0_y*upu_n_c_z;
-        /* (upu-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real upu_c_in_base_x = -axis_x_upu_axes2_x*upu_f_3_x -
-            axis_y_upu_axes2_in_base_x*upu_G_t - axis_z_upu_axes2_in_base_x*upu_G_t_2;
-        const real upu_c_in_base_y = -axis_x_upu_axes2_y*upu_f_3_x -
-            axis_y_upu_axes2_in_base_y*upu_G_t - axis_z_upu_axes2_in_base_y*upu_G_t_2;
-        const real upu_c_in_base_z = -axis_x_upu_axes2_z*upu_f_3_x -
-            axis_y_upu_axes2_in_base_z*upu_G_t - axis_z_upu_axes2_in_base_z*upu_G_t_2;
+        const real upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_root_2*upu_mu_2_in_axes2_z;
+        const real upu_G_in_axes2_z = upu_N_2_in_axes1_z*upu_w_1_in_axes2_z;
+        /* (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
+           freedoms */
+        const real upu_G_m1 = upu_N_2_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z;
         /* (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real upu_G_m_x = upu_G_t_3*upu_end_p1_r3_y;
-        const real upu_G_m_y = upu_G_t_3*upu_end_p1_r3_x;
+        const real upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y;
+        /* (upu-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real upu_c_x = -axis_x_upu_axes2_x*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_x*upu_G_in_axes2_y - axis_z_upu_axes2_x*upu_G_in_axes2_z;
+        const real upu_c_y = -axis_x_upu_axes2_y*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_y*upu_G_in_axes2_y - axis_z_upu_axes2_y*upu_G_in_axes2_z;
+        const real upu_c_z = -axis_x_upu_axes2_z*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_z*upu_G_in_axes2_y - axis_z_upu_axes2_z*upu_G_in_axes2_z;
         /* (upu-c_m) moment of the leg on the platform without actuation */
-        const real upu_c_m_in_base_x = axis_x_upu_axes2_x*upu_G_m_x -
-            axis_y_upu_axes2_in_base_x*upu_G_m_y;
-        const real upu_c_m_in_base_y = axis_x_upu_axes2_y*upu_G_m_x -
-            axis_y_upu_axes2_in_base_y*upu_G_m_y;
-        const real upu_c_m_in_base_z = axis_x_upu_axes2_z*upu_G_m_x -
-            axis_y_upu_axes2_in_base_z*upu_G_m_y;
-        o[0*count + k] = upu_c_in_base_x;
-        o[1*count + k] = upu_c_in_base_y;
-        o[2*count + k] = upu_c_in_base_z;
-        o[3*count + k] = upu_c_m_in_base_x;
-        o[4*count + k] = upu_c_m_in_base_y;
-        o[5*count + k] = upu_c_m_in_base_z;
+        const real upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y;
+        const real upu_c_m_x = axis_x_upu_axes2_x*upu_c_m_in_axes2_x -
+            axis_y_upu_axes2_x*upu_G_m_in_axes2_y;
+        const real upu_c_m_y = axis_x_upu_axes2_y*upu_c_m_in_axes2_x -
+            axis_y_upu_axes2_y*upu_G_m_in_axes2_y;
+        const real upu_c_m_z = axis_x_upu_axes2_z*upu_c_m_in_axes2_x -
+            axis_y_upu_axes2_z*upu_G_m_in_axes2_y;
+        /* (upu-c) leg force on the platform without actuation and without the mass at the connection
+           point */
+        o[0*count + k] = upu_c_x;
+        o[1*count + k] = upu_c_y;
+        o[2*count + k] = upu_c_z;
+        /* (upu-c_m) moment of the leg on the platform without actuation */
+        o[3*count + k] = upu_c_m_x;
+        o[4*count + k] = upu_c_m_y;
+        o[5*count + k] = upu_c_m_z;
+        /* (upu-w_3) force part of reciprocal wrench 3 */
         o[6*count + k] = axis_x_upu_axes2_x;
         o[7*count + k] = axis_x_upu_axes2_y;
         o[8*count + k] = axis_x_upu_axes2_z;
-        o[9*count + k] = -upu_n_c_t;
-        o[10*count + k] = -upu_n_c_t_2;
-        o[11*count + k] = -upu_n_c_t_3;
-        o[12*count + k] = upu_n_m1_in_base_x;
-        o[13*count + k] = upu_n_m1_in_base_y;
-        o[14*count + k] = upu_n_m1_in_base_z;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        o[9*count + k] = -upu_n_c_t_2;
+        o[10*count + k] = -upu_n_c_t_3;
+        o[11*count + k] = -upu_n_c_t_4;
+        /* (upu-mu_c) moment that goes with it */
+        o[12*count + k] = upu_n_m1_x;
+        o[13*count + k] = upu_n_m1_y;
+        o[14*count + k] = upu_n_m1_z;
         o[15*count + k] = UNLESS(magnitude(upu_rho2_1) >
             TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_rho2_2) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-upu_volume_c_t) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_volume_c_t) >
             TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(upu_w_1_t_3) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(upu_w_1_t) > TOLERANCE*R(0.8));
     }
 }
 
@@ -6091,14 +6199,15 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real platform_mass = m->platform_mass;
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            platform_mass*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z +
-            platform_mass*t_y) + gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z +
-            platform_mass*t_z);
+        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
+            + R_xz*h_star_in_platform_z + platform_mass*t_x) +
+            gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+            R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x
+            + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z);
         s[0*w + k] = t_x;
         s[1*w + k] = t_y;
         s[2*w + k] = t_z;
@@ -6164,56 +6273,57 @@ INLINE void potential_legs_upu(const prepared *m, size_t w, size_t leg, size_t l
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real upu_g_r0_x = m->upu_g_r0_x[i];
-        const real upu_g_r0_y = m->upu_g_r0_y[i];
-        const real upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
         /* (potential) potential energy */
-        const real upu_b_r0_x = m->upu_b_r0_x[i];
-        const real upu_b_r0_y = m->upu_b_r0_y[i];
-        const real upu_b_r1_x = upu_b_r0_y*upu_s_1 - upu_b_r0_x*upu_c_1;
-        const real upu_b_r1_y = -upu_b_r0_x*upu_s_1 - upu_b_r0_y*upu_c_1;
-        const real upu_b_r0_z = m->upu_b_r0_z[i];
-        const real upu_b_r3_x = upu_b_r0_z*upu_s_2 - upu_b_r1_y*upu_c_2;
-        const real upu_b_r3_y = -upu_b_r0_z*upu_c_2 - upu_b_r1_y*upu_s_2;
-        const real upu_g_r0_z = m->upu_g_r0_z[i];
-        const real upu_h_2_x = m->upu_h_2_x[i];
-        const real upu_h_2_y = m->upu_h_2_y[i];
-        const real upu_h_2_z = m->upu_h_2_z[i];
-        const real upu_h_3_x = m->upu_h_3_x[i];
-        const real upu_h_3_y = m->upu_h_3_y[i];
-        const real upu_h_3_z = m->upu_h_3_z[i];
+        const real upu_acc_3_t = m->upu_acc_3_t[i];
+        const real upu_acc_3_t_2 = m->upu_acc_3_t_2[i];
+        const real upu_potential_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t;
+        const real upu_potential_t = m->upu_potential_t[i];
+        const real upu_potential_t_2 = m->upu_potential_t_2[i];
+        const real upu_b_in_spec2_y = upu_potential_t_2*upu_s_1 - upu_c_1_t*upu_potential_t;
+        const real upu_potential_t_5 = -upu_c_1_t*upu_potential_t_2 - upu_potential_t*upu_s_1;
+        const real upu_potential_t_3 = m->upu_potential_t_3[i];
+        const real upu_b_in_spec2_x = upu_c_2*upu_potential_t_5 + upu_potential_t_3*upu_s_2;
+        const real upu_b_in_spec2_z = upu_potential_t_5*upu_s_2 - upu_c_2*upu_potential_t_3;
+        const real upu_acc_3_t_3 = m->upu_acc_3_t_3[i];
+        const real upu_h_2_in_spec2_x = m->upu_h_2_in_spec2_x[i];
+        const real upu_h_2_in_spec2_y = m->upu_h_2_in_spec2_y[i];
+        const real upu_h_2_in_spec2_z = m->upu_h_2_in_spec2_z[i];
+        const real upu_h_3_in_spec2_x = m->upu_h_3_in_spec2_x[i];
+        const real upu_h_3_in_spec2_y = m->upu_h_3_in_spec2_y[i];
+        const real upu_h_3_in_spec2_z = m->upu_h_3_in_spec2_z[i];
         const real upu_link2_mass = m->upu_link2_mass[i];
         const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_potential_t = (upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x)*(upu_h_2_y +
-            upu_h_3_y + upu_b_r1_x*upu_link2_mass + upu_b_r1_x*upu_link3_mass) +
-            (upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y)*(upu_h_2_x + upu_h_3_x +
-            upu_b_r3_x*upu_link2_mass + upu_link3_mass*(upu_b_r3_x + upu_root_2)) -
-            (-upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2)*(upu_h_2_z + upu_h_3_z -
-            upu_b_r3_y*upu_link2_mass - upu_b_r3_y*upu_link3_mass);
-        terms[0*count + k] = add ? terms[0*count + k] + upu_potential_t : upu_potential_t;  /* total_upu */
+        const real upu_potential_t_6 = (upu_acc_3_t_3*upu_c_2 +
+            upu_potential_t_4*upu_s_2)*(upu_h_2_in_spec2_z + upu_h_3_in_spec2_z +
+            upu_b_in_spec2_z*upu_link2_mass + upu_b_in_spec2_z*upu_link3_mass) -
+            (upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t)*(upu_h_2_in_spec2_y +
+            upu_h_3_in_spec2_y + upu_b_in_spec2_y*upu_link2_mass +
+            upu_b_in_spec2_y*upu_link3_mass) - (upu_acc_3_t_3*upu_s_2 -
+            upu_c_2*upu_potential_t_4)*(upu_h_2_in_spec2_x + upu_h_3_in_spec2_x +
+            upu_b_in_spec2_x*upu_link2_mass + upu_link3_mass*(upu_b_in_spec2_x + upu_root_2));
+        /* (potential) potential energy */
+        terms[0*count + k] = add ? terms[0*count + k] + upu_potential_t_6 : upu_potential_t_6;  /* potential_upu */
         o[0*count + k] = UNLESS(magnitude(upu_rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001))
             + UNLESS(magnitude(upu_rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
@@ -6231,8 +6341,9 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_t = s[12*w + k];
-        const real total_upu = sums[0*w + k];
-        const real potential_ = -potential_t - total_upu;
+        const real potential_upu = sums[0*w + k];
+        const real potential_ = potential_upu - potential_t;
+        /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
 }
@@ -6302,6 +6413,7 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
         s[9*w + k] = R_zx;
         s[10*w + k] = R_zy;
         s[11*w + k] = R_zz;
+        /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
@@ -6322,27 +6434,27 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t leg, size_t l
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real upu_q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+        const real upu_q_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
         const real R_yx = s[6*w + j];
         const real R_yy = s[7*w + j];
         const real R_yz = s[8*w + j];
-        const real upu_q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+        const real upu_q_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
             R_yz*upu_platform_point_z;
         const real R_zx = s[9*w + j];
         const real R_zy = s[10*w + j];
         const real R_zz = s[11*w + j];
-        const real upu_q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+        const real upu_q_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
             R_zz*upu_platform_point_z;
         const real t_x = s[0*w + j];
         const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x;
+        const real upu_S_x = t_x + upu_q_x - upu_base_point_x;
         const real t_y = s[1*w + j];
         const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y;
+        const real upu_S_y = t_y + upu_q_y - upu_base_point_y;
         const real t_z = s[2*w + j];
         const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z;
+        const real upu_S_z = t_z + upu_q_z - upu_base_point_z;
         /* (upu-px_1) component along the reference direction */
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -6360,146 +6472,139 @@ INLINE void condition_legs_upu(const prepared *m, size_t w, size_t leg, size_t l
         /* (upu-root_1) amplitude, with the sign of the branch */
         const real upu_branch_1 = m->upu_branch_1[i];
         const real upu_root_1 = upu_branch_1*root(upu_rho2_1);
+        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_upu_root_1 = 1/upu_root_1;
+        const real upu_c_1_t = inv_upu_root_1*upu_py_1;
+        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
+        const real upu_s_1 = inv_upu_root_1*upu_px_1;
         /* (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_xi_1_t = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
+        const real upu_xi_1_in_axes1_z = upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz +
             upu_S_z*upu_base_frame_zz;
         /* (upu-rho2_2) squared amplitude */
-        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t;
+        const real upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z;
         /* (upu-root_2) amplitude, with the sign of the branch */
         const real upu_branch_2 = m->upu_branch_2[i];
         const real upu_root_2 = upu_branch_2*root(upu_rho2_2);
         /* (upu-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_upu_root_2 = 1/upu_root_2;
-        const real upu_c_2 = inv_upu_root_2*upu_root_1;
+        const real upu_c_2 = -inv_upu_root_2*upu_root_1;
         /* (upu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real upu_s_2 = inv_upu_root_2*upu_xi_1_t;
+        const real upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z;
         /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
         const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
         const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
         const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+        const real upu_n_m1_t = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
             R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
             R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real upu_end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+        const real upu_n_m1_t_2 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
             R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real upu_end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+        const real upu_n_m1_t_3 = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
             R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
             R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
             R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_upu_root_1 = 1/upu_root_1;
-        const real upu_c_1 = inv_upu_root_1*upu_py_1;
-        /* (upu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real upu_s_1 = inv_upu_root_1*upu_px_1;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1;
-        const real upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y;
-        const real upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2;
+        const real upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1;
+        const real upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4;
+        const real upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2;
+        const real upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_s_2;
         /* (upu-volume_c) triple product of the velocity vectors */
         const real upu_volume_c_t = upu_root_1*upu_root_2;
-        /* (upu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2;
         /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
            out */
-        const real upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t;
+        const real upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t;
+        const real axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t;
+        const real axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t;
+        const real axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t;
+        const real upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t;
+        const real upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t;
+        const real upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t;
         /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 -
-            upu_base_frame_xx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 -
-            upu_base_frame_yx*upu_c_1;
-        const real axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 -
-            upu_base_frame_zx*upu_c_1;
-        const real upu_w_1_t = upu_s_1*upu_s_2;
-        const real upu_w_1_t_2 = upu_c_1*upu_s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*upu_w_1_t +
-            upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*upu_w_1_t +
-            upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*upu_w_1_t +
-            upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y;
-        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
-        const real upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y -
-            axis_x_upu_axes2_y*upu_q_in_base_z;
-        const real upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z -
-            axis_x_upu_axes2_z*upu_q_in_base_x;
-        const real upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x -
-            axis_x_upu_axes2_x*upu_q_in_base_y;
-        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
-           out */
-        const real upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z;
-        const real upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z;
-        const real upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z;
-        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real upu_Hk_a_1_x = axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x +
-            upu_n_c_t_2*upu_q_in_base_z - axis_x_upu_axes2_x*upu_end_p1_r3_y -
-            upu_n_c_t_3*upu_q_in_base_y;
-        const real upu_Hk_a_1_y = axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x +
-            upu_n_c_t_3*upu_q_in_base_x - axis_x_upu_axes2_y*upu_end_p1_r3_y -
-            upu_n_c_t*upu_q_in_base_z;
-        const real upu_Hk_a_1_z = axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x +
-            upu_n_c_t*upu_q_in_base_y - axis_x_upu_axes2_z*upu_end_p1_r3_y -
-            upu_n_c_t_2*upu_q_in_base_x;
-        /* (spread) rms distance of the platform points from their centroid */
-        const real b_c_x = m->b_c_x;
-        const real upu_spread_t = b_c_x - upu_platform_point_x;
-        const real b_c_y = m->b_c_y;
-        const real upu_spread_t_2 = b_c_y - upu_platform_point_y;
-        const real b_c_z = m->b_c_z;
-        const real upu_spread_t_3 = b_c_z - upu_platform_point_z;
-        const real upu_spread_t_4 = upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 +
-            upu_spread_t_3*upu_spread_t_3;
-        /* (upu-rho2_1) squared amplitude */
-        const real upu_pivot_size = magnitude(upu_rho2_1);
-        /* (upu-rho2_2) squared amplitude */
-        const real upu_pivot_size_2 = magnitude(upu_rho2_2);
-        /* (upu-volume_c) triple product of the velocity vectors */
-        const real upu_pivot_size_3 = magnitude(upu_volume_c_t);
-        /* (upu-w_1) force part of reciprocal wrench 1 */
-        const real upu_pivot_size_4 = magnitude(upu_root_2);
-        const real upu_pivot_size_5 = magnitude(upu_w_1_t_3);
+        const real upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z;
+        /* (upu-w_3) force part of reciprocal wrench 3 */
+        const real upu_w_3_t = upu_s_1*upu_s_2;
+        const real upu_w_3_t_2 = upu_c_1_t*upu_s_2;
+        const real axis_y_upu_axes2_x = upu_base_frame_xx*upu_w_3_t +
+            upu_base_frame_xy*upu_w_3_t_2 + upu_base_frame_xz*upu_c_2;
+        const real axis_y_upu_axes2_y = upu_base_frame_yx*upu_w_3_t +
+            upu_base_frame_yy*upu_w_3_t_2 + upu_base_frame_yz*upu_c_2;
+        const real axis_y_upu_axes2_z = upu_base_frame_zx*upu_w_3_t +
+            upu_base_frame_zy*upu_w_3_t_2 + upu_base_frame_zz*upu_c_2;
+        const real upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y;
+        const real upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z;
+        const real upu_w_3_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x;
         /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
+        const real upu_pivot_size = magnitude(upu_rho2_1);
+        const real upu_pivot_size_2 = magnitude(upu_rho2_2);
+        const real upu_pivot_size_3 = magnitude(upu_volume_c_t);
+        const real upu_pivot_size_4 = magnitude(upu_root_2);
+        const real upu_pivot_size_5 = magnitude(upu_w_1_t);
         const real upu_least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(upu_pivot_size),
             R(1.25)*root(upu_pivot_size_2)), R(1.5624999999999998)*upu_pivot_size_3),
             R(1.25)*upu_pivot_size_4), R(1.25)*upu_pivot_size_5);
-        terms[0*count + k] = add ? terms[0*count + k] + upu_spread_t_4 : upu_spread_t_4;  /* total_upu */
-        o[0*count + k] = axis_x_upu_axes2_x;
-        o[1*count + k] = axis_x_upu_axes2_y;
-        o[2*count + k] = axis_x_upu_axes2_z;
-        o[3*count + k] = upu_H_a_3_t;
-        o[4*count + k] = upu_H_a_3_t_2;
-        o[5*count + k] = upu_H_a_3_t_3;
-        o[6*count + k] = -upu_n_c_t;
-        o[7*count + k] = -upu_n_c_t_2;
-        o[8*count + k] = -upu_n_c_t_3;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        const real upu_H_a_3_x = upu_q_y*upu_w_3_z - upu_q_z*upu_w_3_y;
+        const real upu_H_a_3_y = upu_q_z*upu_w_3_x - upu_q_x*upu_w_3_z;
+        const real upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
+        const real upu_Hk_a_1_x = axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
+            upu_end_p1_in_axes2_y*upu_w_3_x - upu_n_c_t_4*upu_q_y;
+        const real upu_Hk_a_1_y = axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
+            upu_end_p1_in_axes2_y*upu_w_3_y - upu_n_c_t_2*upu_q_z;
+        const real upu_Hk_a_1_z = axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
+            upu_end_p1_in_axes2_y*upu_w_3_z - upu_n_c_t_3*upu_q_x;
+        /* (spread) rms distance of the platform points from their centroid */
+        const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real upu_spread_t = b_c_in_platform_x - upu_platform_point_x;
+        const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real upu_spread_t_2 = b_c_in_platform_y - upu_platform_point_y;
+        const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real upu_spread_t_3 = b_c_in_platform_z - upu_platform_point_z;
+        const real upu_spread_t_4 = upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 +
+            upu_spread_t_3*upu_spread_t_3;
+        /* (spread) rms distance of the platform points from their centroid */
+        terms[0*count + k] = add ? terms[0*count + k] + upu_spread_t_4 : upu_spread_t_4;  /* spread_upu */
+        /* (upu-w_3) force part of reciprocal wrench 3 */
+        o[0*count + k] = upu_w_3_x;
+        o[1*count + k] = upu_w_3_y;
+        o[2*count + k] = upu_w_3_z;
+        /* (upu-H_a_3) moment of the column's unit force about the platform origin */
+        o[3*count + k] = upu_H_a_3_x;
+        o[4*count + k] = upu_H_a_3_y;
+        o[5*count + k] = upu_H_a_3_z;
+        /* (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave
+           out */
+        o[6*count + k] = -upu_n_c_t_2;
+        o[7*count + k] = -upu_n_c_t_3;
+        o[8*count + k] = -upu_n_c_t_4;
+        /* (upu-Hk_a_1) moment of the column's unit force about the platform origin */
         o[9*count + k] = upu_Hk_a_1_x;
         o[10*count + k] = upu_Hk_a_1_y;
         o[11*count + k] = upu_Hk_a_1_z;
+        /* (upu-G) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
         o[12*count + k] = upu_least_pivots;
-        o[14*count + k] = ((axis_x_upu_axes2_x + (axis_x_upu_axes2_y + axis_x_upu_axes2_z)) +
-            (upu_H_a_3_t + (upu_H_a_3_t_2 + upu_H_a_3_t_3))) + ((upu_n_c_t + (upu_n_c_t_2 +
-            upu_n_c_t_3)) + ((upu_Hk_a_1_x + upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_least_pivots)));
+        o[14*count + k] = ((upu_w_3_x + (upu_w_3_y + upu_w_3_z)) + (upu_H_a_3_x + (upu_H_a_3_y +
+            upu_H_a_3_z))) + ((upu_n_c_t_2 + (upu_n_c_t_3 + upu_n_c_t_4)) + ((upu_Hk_a_1_x +
+            upu_Hk_a_1_y) + (upu_Hk_a_1_z + upu_least_pivots)));
         o[13*count + k] = UNLESS(magnitude(upu_rho2_1) >
             TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_rho2_2) >
-            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(-upu_volume_c_t) >
+            TOLERANCE*TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_volume_c_t) >
             TOLERANCE*R(0.6400000000000001)) + UNLESS(magnitude(upu_root_2) > TOLERANCE*R(0.8)) +
-            UNLESS(magnitude(upu_w_1_t_3) > TOLERANCE*R(0.8));
+            UNLESS(magnitude(upu_w_1_t) > TOLERANCE*R(0.8));
     }
 }
 
@@ -6531,8 +6636,9 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
     for (size_t k = 0; k < w; ++k) {
         /* (spread) rms distance of the platform points from their centroid */
         const real spread_t = m->spread_t;
-        const real total_upu = sums[0*w + k];
-        const real spread_ = spread_t*root(total_upu);
+        const real spread_upu = sums[0*w + k];
+        const real spread_ = spread_t*root(spread_upu);
+        /* (spread) rms distance of the platform points from their centroid */
         lengths[0*w + k] = spread_;
         t->total[k] += spread_;
     }

@@ -97,20 +97,24 @@ typedef struct {
    public; its members are private, their names and order may change. */
 typedef struct {
     /* 3 legs of type upu; copies of the first fill up */
-    tripod_3upu_real upu_J_group_2_xx[4], upu_J_group_2_xy[4], upu_J_group_2_xz[4],
-            upu_J_group_2_yy[4], upu_J_group_2_yz[4], upu_J_group_2_zz[4], upu_Sigma_2_xx[4],
-            upu_Sigma_2_yy[4], upu_Sigma_2_zz[4], upu_b_r0_x[4], upu_b_r0_y[4], upu_b_r0_z[4],
+    tripod_3upu_real upu_J_group_2_in_axes2_xx[4], upu_J_group_2_in_axes2_xy[4],
+            upu_J_group_2_in_axes2_xz[4], upu_J_group_2_in_axes2_yy[4], upu_J_group_2_in_axes2_yz[4],
+            upu_J_group_2_in_axes2_zz[4], upu_Sigma_2_in_axes2_xx[4], upu_Sigma_2_in_axes2_yy[4],
+            upu_Sigma_2_in_axes2_zz[4], upu_acc_3_t[4], upu_acc_3_t_2[4], upu_acc_3_t_3[4],
             upu_base_frame_xx[4], upu_base_frame_xy[4], upu_base_frame_xz[4], upu_base_frame_yx[4],
             upu_base_frame_yy[4], upu_base_frame_yz[4], upu_base_frame_zx[4], upu_base_frame_zy[4],
             upu_base_frame_zz[4], upu_base_point_x[4], upu_base_point_y[4], upu_base_point_z[4],
-            upu_branch_1[4], upu_branch_2[4], upu_g_r0_x[4], upu_g_r0_y[4], upu_g_r0_z[4],
-            upu_h_2_x[4], upu_h_2_y[4], upu_h_2_z[4], upu_h_3_x[4], upu_h_3_y[4], upu_h_3_z[4],
-            upu_link2_mass[4], upu_link3_mass[4], upu_platform_joint_axis_platform_x[4],
-            upu_platform_joint_axis_platform_y[4], upu_platform_joint_axis_platform_z[4],
-            upu_platform_point_x[4], upu_platform_point_y[4], upu_platform_point_z[4];
-    tripod_3upu_real J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
-            h_star_x, h_star_y, h_star_z, legs_size, platform_mass, spread_t;
+            upu_branch_1[4], upu_branch_2[4], upu_h_2_in_spec2_x[4], upu_h_2_in_spec2_y[4],
+            upu_h_2_in_spec2_z[4], upu_h_3_in_spec2_x[4], upu_h_3_in_spec2_y[4],
+            upu_h_3_in_spec2_z[4], upu_link2_mass[4], upu_link3_mass[4],
+            upu_platform_joint_axis_platform_x[4], upu_platform_joint_axis_platform_y[4],
+            upu_platform_joint_axis_platform_z[4], upu_platform_point_x[4], upu_platform_point_y[4],
+            upu_platform_point_z[4], upu_potential_t[4], upu_potential_t_2[4], upu_potential_t_3[4];
+    tripod_3upu_real J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+            J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
+            J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_in_platform_x, b_c_in_platform_y,
+            b_c_in_platform_z, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+            h_star_in_platform_y, h_star_in_platform_z, legs_size, platform_mass, spread_t;
 } tripod_3upu_model;
 
 extern const tripod_3upu_params tripod_3upu_default_params;

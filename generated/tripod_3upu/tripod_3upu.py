@@ -367,7 +367,7 @@ def _unfit(value):
 def _argument(function, name, value, shape, default=None, rule=""):
     """An argument as an array of floats (..., *shape), or an error that names it."""
     if value is None and default is not None:
-        return _filled(shape, default) if isinstance(default, float) else default
+        return _filled(shape, default) if isinstance(default, (float, tuple)) else default
     function, array = "first guess" if name == "q0" else function, value
     if type(value) is not np.ndarray or value.dtype is not _REAL:
         array = _numbers(function, name, value)
@@ -546,29 +546,29 @@ def _prepare(p):
     upu_branch_1 = _BRANCHES["upu_branch_1"]
     upu_branch_2 = _BRANCHES["upu_branch_2"]
     # (h_star) first moment about the platform origin
-    h_star_x = platform_centre_of_mass_x*platform_mass
-    h_star_y = platform_centre_of_mass_y*platform_mass
-    h_star_z = platform_centre_of_mass_z*platform_mass
+    h_star_in_platform_x = platform_centre_of_mass_x*platform_mass
+    h_star_in_platform_y = platform_centre_of_mass_y*platform_mass
+    h_star_in_platform_z = platform_centre_of_mass_z*platform_mass
     # (J_star) inertia tensor about the platform origin
     J_star_t = platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_2 = platform_centre_of_mass_y*platform_centre_of_mass_y
     J_star_t_3 = platform_centre_of_mass_z*platform_centre_of_mass_z
     J_star_t_4 = J_star_t + J_star_t_2 + J_star_t_3
-    J_star_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4)
-    J_star_xy = (
+    J_star_in_platform_xx = platform_inertia_xx - platform_mass*(J_star_t - J_star_t_4)
+    J_star_in_platform_xy = (
     platform_inertia_xy - platform_centre_of_mass_x*platform_centre_of_mass_y*platform_mass
     )
-    J_star_xz = (
+    J_star_in_platform_xz = (
     platform_inertia_xz - platform_centre_of_mass_x*platform_centre_of_mass_z*platform_mass
     )
-    J_star_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4)
-    J_star_yz = (
+    J_star_in_platform_yy = platform_inertia_yy - platform_mass*(J_star_t_2 - J_star_t_4)
+    J_star_in_platform_yz = (
     platform_inertia_yz - platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     )
-    J_star_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4)
-    J_star_t_5 = J_star_xx - J_star_yy
+    J_star_in_platform_zz = platform_inertia_zz - platform_mass*(J_star_t_3 - J_star_t_4)
+    J_star_t_5 = J_star_in_platform_xx - J_star_in_platform_yy
     J_star_t_6 = 0.5*J_star_t_5
-    J_star_t_7 = J_star_xx - J_star_zz
+    J_star_t_7 = J_star_in_platform_xx - J_star_in_platform_zz
     J_star_t_8 = 0.5*J_star_t_7
     # (Z_p) centripetal force and weight of the platform
     Z_p_t = gravity_x*platform_mass
@@ -578,138 +578,148 @@ def _prepare(p):
     spread_t = 0.3333333333333333*sqrt(3.0)
     # (legs_size) rms size of the legs, taken where the platform points coincide
     legs_size = 1.385640646055102*spread_t
+    # (upu-h_2) first moment of link 2 about the origin of link 2
+    upu_h_2_in_spec2_x = upu_link2_centre_of_mass_x*upu_link2_mass
+    upu_h_2_in_spec2_y = upu_link2_centre_of_mass_y*upu_link2_mass
+    upu_h_2_in_spec2_z = upu_link2_centre_of_mass_z*upu_link2_mass
     # (upu-h_3) first moment of link 3 about the origin of link 3
-    upu_h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass
-    upu_h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass
-    upu_h_3_z = upu_link3_centre_of_mass_z*upu_link3_mass
-    # (upu-J_2) inertia tensor of link 2 about the origin of link 2
-    upu_J_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x
-    upu_J_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y
-    upu_J_2_t_3 = upu_link2_centre_of_mass_z*upu_link2_centre_of_mass_z
-    upu_J_2_t_4 = upu_J_2_t + upu_J_2_t_2 + upu_J_2_t_3
-    # (upu-J_3) inertia tensor of link 3 about the origin of link 3
-    upu_J_3_t = upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_x
-    upu_J_3_t_2 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y
-    upu_J_3_t_3 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z
-    upu_J_3_t_4 = upu_J_3_t + upu_J_3_t_2 + upu_J_3_t_3
-    # (upu-J_group_2) inertia of the links that turn with link 2, each about its reference point
-    upu_J_group_2_xx = (
-    upu_link2_inertia_xx + upu_link3_inertia_xx - upu_link2_mass*(upu_J_2_t - upu_J_2_t_4) -
-        upu_link3_mass*(upu_J_3_t - upu_J_3_t_4)
+    upu_h_3_in_spec2_x = upu_link3_centre_of_mass_x*upu_link3_mass
+    upu_h_3_in_spec2_y = upu_link3_centre_of_mass_y*upu_link3_mass
+    upu_h_3_in_spec2_z = upu_link3_centre_of_mass_z*upu_link3_mass
+    # (upu-acc_3) acceleration of the reference point of link 3, less gravity
+    upu_acc_3_t = (
+    gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx + gravity_z*upu_base_frame_zx
     )
-    upu_J_group_2_xy = (
+    upu_acc_3_t_2 = (
+    gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy + gravity_z*upu_base_frame_zy
+    )
+    upu_acc_3_t_3 = (
+    gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz + gravity_z*upu_base_frame_zz
+    )
+    # (upu-J_group_2) inertia of the links that turn with link 2, each about its reference point
+    upu_J_group_2_t = upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_x
+    upu_J_group_2_t_2 = upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_y
+    upu_J_group_2_t_3 = upu_link2_centre_of_mass_z*upu_link2_centre_of_mass_z
+    upu_J_group_2_t_4 = upu_J_group_2_t + upu_J_group_2_t_2 + upu_J_group_2_t_3
+    upu_J_group_2_t_5 = upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_x
+    upu_J_group_2_t_6 = upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_y
+    upu_J_group_2_t_7 = upu_link3_centre_of_mass_z*upu_link3_centre_of_mass_z
+    upu_J_group_2_t_8 = upu_J_group_2_t_5 + upu_J_group_2_t_6 + upu_J_group_2_t_7
+    upu_J_group_2_in_axes2_xx = (
+    upu_link2_inertia_xx + upu_link3_inertia_xx - upu_link2_mass*(upu_J_group_2_t -
+        upu_J_group_2_t_4) - upu_link3_mass*(upu_J_group_2_t_5 - upu_J_group_2_t_8)
+    )
+    upu_J_group_2_in_axes2_xy = (
     upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_z*upu_link2_mass +
         upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_z*upu_link3_mass -
         upu_link2_inertia_xz - upu_link3_inertia_xz
     )
-    upu_J_group_2_xz = (
+    upu_J_group_2_in_axes2_xz = (
     upu_link2_inertia_xy + upu_link3_inertia_xy -
         upu_link2_centre_of_mass_x*upu_link2_centre_of_mass_y*upu_link2_mass -
         upu_link3_centre_of_mass_x*upu_link3_centre_of_mass_y*upu_link3_mass
     )
-    upu_J_group_2_yy = (
-    upu_link2_inertia_zz + upu_link3_inertia_zz - upu_link2_mass*(upu_J_2_t_3 - upu_J_2_t_4) -
-        upu_link3_mass*(upu_J_3_t_3 - upu_J_3_t_4)
+    upu_J_group_2_in_axes2_yy = (
+    upu_link2_inertia_zz + upu_link3_inertia_zz - upu_link2_mass*(upu_J_group_2_t_3 -
+        upu_J_group_2_t_4) - upu_link3_mass*(upu_J_group_2_t_7 - upu_J_group_2_t_8)
     )
-    upu_J_group_2_yz = (
+    upu_J_group_2_in_axes2_yz = (
     upu_link2_centre_of_mass_y*upu_link2_centre_of_mass_z*upu_link2_mass +
         upu_link3_centre_of_mass_y*upu_link3_centre_of_mass_z*upu_link3_mass -
         upu_link2_inertia_yz - upu_link3_inertia_yz
     )
-    upu_J_group_2_zz = (
-    upu_link2_inertia_yy + upu_link3_inertia_yy - upu_link2_mass*(upu_J_2_t_2 - upu_J_2_t_4) -
-        upu_link3_mass*(upu_J_3_t_2 - upu_J_3_t_4)
+    upu_J_group_2_in_axes2_zz = (
+    upu_link2_inertia_yy + upu_link3_inertia_yy - upu_link2_mass*(upu_J_group_2_t_2 -
+        upu_J_group_2_t_4) - upu_link3_mass*(upu_J_group_2_t_6 - upu_J_group_2_t_8)
     )
-    # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-    upu_g_r0_x = (
-    gravity_x*upu_base_frame_xx + gravity_y*upu_base_frame_yx + gravity_z*upu_base_frame_zx
-    )
-    upu_g_r0_y = (
-    gravity_x*upu_base_frame_xy + gravity_y*upu_base_frame_yy + gravity_z*upu_base_frame_zy
-    )
-    upu_g_r0_z = (
-    gravity_x*upu_base_frame_xz + gravity_y*upu_base_frame_yz + gravity_z*upu_base_frame_zz
-    )
-    # (upu-h_2) first moment of link 2 about the origin of link 2
-    upu_h_2_x = upu_link2_centre_of_mass_x*upu_link2_mass
-    upu_h_2_y = upu_link2_centre_of_mass_y*upu_link2_mass
-    upu_h_2_z = upu_link2_centre_of_mass_z*upu_link2_mass
     # (upu-trace_J_2) half the trace of that inertia tensor
-    upu_trace_J_2 = 0.5*upu_J_group_2_xx + 0.5*upu_J_group_2_yy + 0.5*upu_J_group_2_zz
+    upu_trace_J_2 = (
+    0.5*upu_J_group_2_in_axes2_xx + 0.5*upu_J_group_2_in_axes2_yy + 0.5*upu_J_group_2_in_axes2_zz
+    )
     # (upu-Sigma_2) second moment of mass of the links that turn with link 2
-    upu_Sigma_2_xx = upu_trace_J_2 - upu_J_group_2_xx
-    upu_Sigma_2_yy = upu_trace_J_2 - upu_J_group_2_yy
-    upu_Sigma_2_zz = upu_trace_J_2 - upu_J_group_2_zz
+    upu_Sigma_2_in_axes2_xx = upu_trace_J_2 - upu_J_group_2_in_axes2_xx
+    upu_Sigma_2_in_axes2_yy = upu_trace_J_2 - upu_J_group_2_in_axes2_yy
+    upu_Sigma_2_in_axes2_zz = upu_trace_J_2 - upu_J_group_2_in_axes2_zz
     # (potential) potential energy
-    upu_b_r0_x = (
+    upu_potential_t = (
     upu_base_frame_xx*upu_base_point_x + upu_base_frame_yx*upu_base_point_y +
         upu_base_frame_zx*upu_base_point_z
     )
-    upu_b_r0_y = (
+    upu_potential_t_2 = (
     upu_base_frame_xy*upu_base_point_x + upu_base_frame_yy*upu_base_point_y +
         upu_base_frame_zy*upu_base_point_z
     )
-    upu_b_r0_z = (
+    upu_potential_t_3 = (
     upu_base_frame_xz*upu_base_point_x + upu_base_frame_yz*upu_base_point_y +
         upu_base_frame_zz*upu_base_point_z
     )
-    total_upu_x = np.sum(np.broadcast_to(upu_platform_point_x, _upu))
-    total_upu_y = np.sum(np.broadcast_to(upu_platform_point_y, _upu))
-    total_upu_z = np.sum(np.broadcast_to(upu_platform_point_z, _upu))
+    b_c_upu_in_platform_x = np.sum(np.broadcast_to(upu_platform_point_x, _upu))
+    b_c_upu_in_platform_y = np.sum(np.broadcast_to(upu_platform_point_y, _upu))
+    b_c_upu_in_platform_z = np.sum(np.broadcast_to(upu_platform_point_z, _upu))
     # (b_c) centroid of the platform points
-    b_c_x = 0.3333333333333333*total_upu_x
-    b_c_y = 0.3333333333333333*total_upu_y
-    b_c_z = 0.3333333333333333*total_upu_z
+    b_c_in_platform_x = 0.3333333333333333*b_c_upu_in_platform_x
+    b_c_in_platform_y = 0.3333333333333333*b_c_upu_in_platform_y
+    b_c_in_platform_z = 0.3333333333333333*b_c_upu_in_platform_z
     return {
         "dynamics": (
-        (J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-                Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-                h_star_z, platform_mass,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6,
+                J_star_t_8, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z,
+                h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
             (
                 (_upu,
-        (upu_J_group_2_xx, upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yy, upu_J_group_2_yz,
-                    upu_J_group_2_zz, upu_Sigma_2_xx, upu_Sigma_2_yy, upu_Sigma_2_zz,
+        (upu_J_group_2_in_axes2_xx, upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz,
+                    upu_J_group_2_in_axes2_yy, upu_J_group_2_in_axes2_yz,
+                    upu_J_group_2_in_axes2_zz, upu_Sigma_2_in_axes2_xx, upu_Sigma_2_in_axes2_yy,
+                    upu_Sigma_2_in_axes2_zz, upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3,
                     upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
                     upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
                     upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z,
-                    upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y, upu_g_r0_z, upu_h_2_x,
-                    upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z, upu_link3_mass,
+                    upu_branch_1, upu_branch_2, upu_h_2_in_spec2_x, upu_h_2_in_spec2_y,
+                    upu_h_2_in_spec2_z, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y,
+                    upu_h_3_in_spec2_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
+                    upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
+                ),
+            ),
+        ),
+        "M": (
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yz, J_star_t_6, J_star_t_8, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z, platform_mass,),
+            (
+                (_upu,
+        (upu_J_group_2_in_axes2_xx, upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz,
+                    upu_J_group_2_in_axes2_yy, upu_J_group_2_in_axes2_yz,
+                    upu_J_group_2_in_axes2_zz, upu_base_frame_xx, upu_base_frame_xy,
+                    upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+                    upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+                    upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2,
+                    upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z, upu_link3_mass,
                     upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
                     upu_platform_joint_axis_platform_z, upu_platform_point_x,
                     upu_platform_point_y, upu_platform_point_z,),
                 ),
             ),
         ),
-        "M": (
-        (J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-                h_star_z, platform_mass,),
-            (
-                (_upu,
-        (upu_J_group_2_xx, upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yy, upu_J_group_2_yz,
-                    upu_J_group_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_3_x, upu_h_3_y, upu_h_3_z,
-                    upu_link3_mass, upu_platform_joint_axis_platform_x,
-                    upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
-                ),
-            ),
-        ),
         "Z": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2,
-                Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t,
+                Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x,
+                h_star_in_platform_y, h_star_in_platform_z,),
             (
                 (_upu,
-        (upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
-                    upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y,
-                    upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z,
-                    upu_link3_mass, upu_platform_joint_axis_platform_x,
-                    upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
+        (upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
+                    upu_Sigma_2_in_axes2_xx, upu_Sigma_2_in_axes2_yy, upu_Sigma_2_in_axes2_zz,
+                    upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx,
+                    upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
+                    upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
+                    upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+                    upu_branch_2, upu_h_2_in_spec2_x, upu_h_2_in_spec2_y, upu_h_2_in_spec2_z,
+                    upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z, upu_link3_mass,
+                    upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+                    upu_platform_joint_axis_platform_z, upu_platform_point_x,
+                    upu_platform_point_y, upu_platform_point_z,),
                 ),
             ),
         ),
@@ -752,19 +762,23 @@ def _prepare(p):
             ),
         ),
         "required": (
-        (J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-                gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
+        (J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz,
+                J_star_in_platform_yy, J_star_in_platform_yz, J_star_in_platform_zz, gravity_x,
+                gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
             (
                 (_upu,
-        (upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
-                    upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y,
-                    upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z,
-                    upu_link3_mass, upu_platform_joint_axis_platform_x,
-                    upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
+        (upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
+                    upu_Sigma_2_in_axes2_xx, upu_Sigma_2_in_axes2_yy, upu_Sigma_2_in_axes2_zz,
+                    upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx,
+                    upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
+                    upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
+                    upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+                    upu_branch_2, upu_h_2_in_spec2_x, upu_h_2_in_spec2_y, upu_h_2_in_spec2_z,
+                    upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z, upu_link3_mass,
+                    upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+                    upu_platform_joint_axis_platform_z, upu_platform_point_x,
+                    upu_platform_point_y, upu_platform_point_z,),
                 ),
             ),
         ),
@@ -822,34 +836,38 @@ def _prepare(p):
         (),
             (
                 (_upu,
-        (upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
-                    upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-                    upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-                    upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-                    upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y,
-                    upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z,
-                    upu_link3_mass, upu_platform_joint_axis_platform_x,
-                    upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-                    upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,),
-                ),
-            ),
-        ),
-        "potential": (
-        (gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,),
-            (
-                (_upu,
-        (upu_b_r0_x, upu_b_r0_y, upu_b_r0_z, upu_base_frame_xx, upu_base_frame_xy,
-                    upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-                    upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-                    upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x,
-                    upu_g_r0_y, upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y,
-                    upu_h_3_z, upu_link2_mass, upu_link3_mass, upu_platform_point_x,
+        (upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
+                    upu_Sigma_2_in_axes2_xx, upu_Sigma_2_in_axes2_yy, upu_Sigma_2_in_axes2_zz,
+                    upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx,
+                    upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
+                    upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
+                    upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+                    upu_branch_2, upu_h_2_in_spec2_x, upu_h_2_in_spec2_y, upu_h_2_in_spec2_z,
+                    upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z, upu_link3_mass,
+                    upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+                    upu_platform_joint_axis_platform_z, upu_platform_point_x,
                     upu_platform_point_y, upu_platform_point_z,),
                 ),
             ),
         ),
+        "potential": (
+        (gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+                h_star_in_platform_z, platform_mass,),
+            (
+                (_upu,
+        (upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx, upu_base_frame_xy,
+                    upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+                    upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+                    upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2,
+                    upu_h_2_in_spec2_x, upu_h_2_in_spec2_y, upu_h_2_in_spec2_z,
+                    upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z, upu_link2_mass,
+                    upu_link3_mass, upu_platform_point_x, upu_platform_point_y,
+                    upu_platform_point_z, upu_potential_t, upu_potential_t_2, upu_potential_t_3,),
+                ),
+            ),
+        ),
         "condition": (
-        (b_c_x, b_c_y, b_c_z, legs_size, spread_t,),
+        (b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t,),
             (
                 (_upu,
         (upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
@@ -1360,9 +1378,10 @@ def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
     (
-    J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
-        Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-        platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, J_star_t_6, J_star_t_8, Z_p_t, Z_p_t_2,
+        Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -1419,74 +1438,94 @@ def _run_dynamics(m, X, V):
     out_Hk = m.zeros("Hk")
     out_constraint_bias = m.zeros("constraint_bias")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
-    J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx
-    J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_10 = 2.0*J_star_t_9 + J_star_xx
-    J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_14 = 2.0*J_star_t_13 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 27
     for leg, k in legs[0]:
         (
-        upu_J_group_2_xx, upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yy, upu_J_group_2_yz,
-            upu_J_group_2_zz, upu_Sigma_2_xx, upu_Sigma_2_yy, upu_Sigma_2_zz, upu_base_frame_xx,
-            upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
-            upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
-            upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2,
-            upu_g_r0_x, upu_g_r0_y, upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x,
-            upu_h_3_y, upu_h_3_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
+        upu_J_group_2_in_axes2_xx, upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz,
+            upu_J_group_2_in_axes2_yy, upu_J_group_2_in_axes2_yz, upu_J_group_2_in_axes2_zz,
+            upu_Sigma_2_in_axes2_xx, upu_Sigma_2_in_axes2_yy, upu_Sigma_2_in_axes2_zz,
+            upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx, upu_base_frame_xy,
+            upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+            upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+            upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_2_in_spec2_x,
+            upu_h_2_in_spec2_y, upu_h_2_in_spec2_z, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y,
+            upu_h_3_in_spec2_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
             upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
             upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -1499,616 +1538,633 @@ def _run_dynamics(m, X, V):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_S_dot_t = upu_s_1*upu_s_2
+        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y
+        upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z
+        upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t_3
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_4
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_5
+        upu_S_dot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
+        )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
+        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
+        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
-        upu_w_1_t_4 = inv_upu_w_1_t_25*upu_n_c_z
-        # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_d_alpha_1_t = inv_upu_w_1_t_25*upu_s_2
-        upu_d_alpha_1_t_2 = inv_upu_w_1_t_25*upu_c_2
-        # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_d_acc_3_t = upu_d_alpha_1_t_2*upu_root_2
-        # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_d_phi_3_t = inv_upu_root_2*upu_h_3_z
-        upu_d_phi_3_t_2 = upu_d_alpha_1_t_2*upu_h_3_y
-        # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        upu_d_Gamma_1_z = (
-        upu_s_2*(upu_J_group_2_xx*upu_d_alpha_1_t - upu_J_group_2_xy*upu_d_alpha_1_t_2 -
-            upu_d_acc_3_t*upu_h_3_z) - upu_c_2*(upu_J_group_2_xy*upu_d_alpha_1_t -
-            upu_J_group_2_yy*upu_d_alpha_1_t_2 - upu_d_acc_3_t*upu_h_3_x -
-            upu_root_2*(upu_d_acc_3_t*upu_link3_mass + upu_d_alpha_1_t_2*upu_h_3_x -
-            upu_d_alpha_1_t*upu_h_3_z))
-        )
-        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_d_G_t = (
-        inv_upu_root_2*(upu_J_group_2_xz*upu_d_alpha_1_t - upu_J_group_2_yz*upu_d_alpha_1_t_2 -
-            upu_d_alpha_1_t*upu_h_3_y*upu_root_2)
-        )
-        # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
-        upu_Q_t = (
-        inv_upu_root_2*(upu_h_3_x + inv_upu_root_2*upu_J_group_2_zz + upu_root_2*(upu_link3_mass +
-            inv_upu_root_2*upu_h_3_x)) - upu_link3_mass
-        )
-        upu_Q_t_2 = 0.5*upu_Q_t
-        upu_Q_t_3 = inv_upu_w_1_t_25*upu_d_Gamma_1_z - upu_link3_mass
-        upu_Q_t_4 = 0.5*upu_Q_t_3
-        upu_Q_t_5 = (
-        axis_x_upu_axes2_x*upu_d_phi_3_t + axis_y_upu_axes2_in_base_x*upu_Q_t_2 +
-            axis_z_upu_axes2_in_base_x*upu_d_G_t
-        )
-        upu_Q_t_6 = (
-        axis_x_upu_axes2_y*upu_d_phi_3_t + axis_y_upu_axes2_in_base_y*upu_Q_t_2 +
-            axis_z_upu_axes2_in_base_y*upu_d_G_t
-        )
-        upu_Q_t_7 = (
-        axis_x_upu_axes2_z*upu_d_phi_3_t + axis_y_upu_axes2_in_base_z*upu_Q_t_2 +
-            axis_z_upu_axes2_in_base_z*upu_d_G_t
-        )
-        upu_Q_t_8 = axis_z_upu_axes2_in_base_x*upu_Q_t_4 - axis_x_upu_axes2_x*upu_d_phi_3_t_2
-        upu_Q_t_9 = axis_z_upu_axes2_in_base_y*upu_Q_t_4 - axis_x_upu_axes2_y*upu_d_phi_3_t_2
-        upu_Q_t_10 = axis_z_upu_axes2_in_base_z*upu_Q_t_4 - axis_x_upu_axes2_z*upu_d_phi_3_t_2
-        upu_Q_t_11 = axis_y_upu_axes2_in_base_x*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_8
-        upu_Q_t_12 = 2.0*upu_Q_t_11 + upu_link3_mass
-        upu_Q_t_13 = (
-        axis_y_upu_axes2_in_base_x*upu_Q_t_6 + axis_y_upu_axes2_in_base_y*upu_Q_t_5 +
-            axis_z_upu_axes2_in_base_x*upu_Q_t_9 + axis_z_upu_axes2_in_base_y*upu_Q_t_8
-        )
-        upu_Q_t_14 = (
-        axis_y_upu_axes2_in_base_x*upu_Q_t_7 + axis_y_upu_axes2_in_base_z*upu_Q_t_5 +
-            axis_z_upu_axes2_in_base_x*upu_Q_t_10 + axis_z_upu_axes2_in_base_z*upu_Q_t_8
-        )
-        upu_Q_t_15 = axis_y_upu_axes2_in_base_y*upu_Q_t_6 + axis_z_upu_axes2_in_base_y*upu_Q_t_9
-        upu_Q_t_16 = 2.0*upu_Q_t_15 + upu_link3_mass
-        upu_Q_t_17 = (
-        axis_y_upu_axes2_in_base_y*upu_Q_t_7 + axis_y_upu_axes2_in_base_z*upu_Q_t_6 +
-            axis_z_upu_axes2_in_base_y*upu_Q_t_10 + axis_z_upu_axes2_in_base_z*upu_Q_t_9
-        )
-        upu_Q_t_18 = axis_y_upu_axes2_in_base_z*upu_Q_t_7 + axis_z_upu_axes2_in_base_z*upu_Q_t_10
-        upu_Q_t_19 = 2.0*upu_Q_t_18 + upu_link3_mass
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
+        # (upu-m1_w_1) moment part 1 of reciprocal wrench 1
+        upu_m1_w_1 = upu_n_c_t*upu_w_1_in_axes2_z
         # (upu-o_1) moment part of reciprocal wrench 1
-        upu_o_1_x = upu_end_p1_r3_y*upu_w_1_t_4
-        upu_o_1_y = upu_end_p1_r3_x*upu_w_1_t_4
-        # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_dalpha_alpha_1_xx = upu_o_1_x*upu_s_2
-        upu_dalpha_alpha_1_xy = upu_o_1_y*upu_s_2
-        upu_dalpha_alpha_1_yx = upu_c_2*upu_o_1_x
-        upu_dalpha_alpha_1_yy = upu_c_2*upu_o_1_y
-        # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_yx*upu_root_2
-        upu_dalpha_acc_3_t_2 = upu_dalpha_alpha_1_yy*upu_root_2
-        # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_dalpha_phi_3_t = upu_dalpha_alpha_1_yx*upu_h_3_y
-        upu_dalpha_phi_3_t_2 = upu_dalpha_alpha_1_yy*upu_h_3_y
-        # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        upu_dalpha_Gamma_1_x = (
-        upu_s_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_z -
-            upu_J_group_2_xx*upu_dalpha_alpha_1_xx) -
-            upu_c_2*(upu_J_group_2_yy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_x -
-            upu_J_group_2_xy*upu_dalpha_alpha_1_xx - upu_root_2*(upu_dalpha_alpha_1_xx*upu_h_3_z -
-            upu_dalpha_acc_3_t*upu_link3_mass - upu_dalpha_alpha_1_yx*upu_h_3_x))
-        )
-        upu_dalpha_Gamma_1_y = (
-        upu_s_2*(upu_J_group_2_xx*upu_dalpha_alpha_1_xy - upu_J_group_2_xy*upu_dalpha_alpha_1_yy -
-            upu_dalpha_acc_3_t_2*upu_h_3_z) - upu_c_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_yy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_x -
-            upu_root_2*(upu_dalpha_acc_3_t_2*upu_link3_mass + upu_dalpha_alpha_1_yy*upu_h_3_x -
-            upu_dalpha_alpha_1_xy*upu_h_3_z))
-        )
-        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_dalpha_G_t = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_x
-        upu_dalpha_G_t_2 = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_y
-        upu_dalpha_G_t_3 = (
-        inv_upu_root_2*(upu_J_group_2_yz*upu_dalpha_alpha_1_yx +
-            upu_dalpha_alpha_1_xx*upu_h_3_y*upu_root_2 - upu_J_group_2_xz*upu_dalpha_alpha_1_xx)
-        )
-        upu_dalpha_G_t_4 = (
-        inv_upu_root_2*(upu_J_group_2_xz*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_yz*upu_dalpha_alpha_1_yy - upu_dalpha_alpha_1_xy*upu_h_3_y*upu_root_2)
-        )
-        # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        upu_dalpha_c_in_base_x = (
-        -axis_x_upu_axes2_x*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t
-        )
-        upu_dalpha_c_in_base_y = (
-        -axis_x_upu_axes2_y*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t
-        )
-        upu_dalpha_c_in_base_z = (
-        -axis_x_upu_axes2_z*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t
-        )
-        upu_dalpha_c_in_base_x_2 = (
-        axis_x_upu_axes2_x*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t_2
-        )
-        upu_dalpha_c_in_base_y_2 = (
-        axis_x_upu_axes2_y*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t_2
-        )
-        upu_dalpha_c_in_base_z_2 = (
-        axis_x_upu_axes2_z*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t_2
-        )
-        # (M_ta) coupling block of M
-        upu_M_ta_t = upu_Q_t_13*upu_q_in_base_z
-        upu_M_ta_t_2 = upu_Q_t_14*upu_q_in_base_y
-        upu_M_ta_t_3 = upu_Q_t_17*upu_q_in_base_x
-        upu_M_ta_t_4 = (
-        upu_M_ta_t + axis_x_upu_axes2_x*upu_dalpha_c_in_base_x +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_x_2 - upu_M_ta_t_2
-        )
-        upu_M_ta_t_5 = (
-        upu_Q_t_12*upu_q_in_base_z - axis_x_upu_axes2_y*upu_dalpha_c_in_base_x -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_x_2 - upu_Q_t_14*upu_q_in_base_x
-        )
-        upu_M_ta_t_6 = (
-        axis_x_upu_axes2_z*upu_dalpha_c_in_base_x +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_x_2 + upu_Q_t_12*upu_q_in_base_y -
-            upu_Q_t_13*upu_q_in_base_x
-        )
-        upu_M_ta_t_7 = (
-        axis_x_upu_axes2_x*upu_dalpha_c_in_base_y +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_y_2 + upu_Q_t_16*upu_q_in_base_z -
-            upu_Q_t_17*upu_q_in_base_y
-        )
-        upu_M_ta_t_8 = (
-        upu_M_ta_t - upu_M_ta_t_3 - axis_x_upu_axes2_y*upu_dalpha_c_in_base_y -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_y_2
-        )
-        upu_M_ta_t_9 = (
-        axis_x_upu_axes2_z*upu_dalpha_c_in_base_y +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_y_2 + upu_Q_t_13*upu_q_in_base_y -
-            upu_Q_t_16*upu_q_in_base_x
-        )
-        upu_M_ta_t_10 = (
-        axis_x_upu_axes2_x*upu_dalpha_c_in_base_z +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_z_2 + upu_Q_t_17*upu_q_in_base_z -
-            upu_Q_t_19*upu_q_in_base_y
-        )
-        upu_M_ta_t_11 = (
-        upu_Q_t_14*upu_q_in_base_z - axis_x_upu_axes2_y*upu_dalpha_c_in_base_z -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_z_2 - upu_Q_t_19*upu_q_in_base_x
-        )
-        upu_M_ta_t_12 = (
-        upu_M_ta_t_3 - upu_M_ta_t_2 - axis_x_upu_axes2_z*upu_dalpha_c_in_base_z -
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_z_2
-        )
-        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        upu_dalpha_G_m1_t = upu_dalpha_Gamma_1_x*upu_w_1_t_4
-        upu_dalpha_G_m1_t_2 = upu_dalpha_Gamma_1_y*upu_w_1_t_4
-        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        upu_d_G_m1_t = upu_c_2*upu_h_3_y*upu_w_1_t_4
-        upu_d_G_m1_t_2 = (
-        upu_w_1_t_4*(upu_s_2*(inv_upu_root_2*upu_J_group_2_xz - upu_h_3_y) -
-            inv_upu_root_2*upu_J_group_2_yz*upu_c_2)
-        )
-        upu_d_G_m1_t_3 = upu_d_Gamma_1_z*upu_w_1_t_4
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_in_base_x = (
-        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y
-        )
-        upu_n_m1_in_base_y = (
-        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x - axis_x_upu_axes2_y*upu_end_p1_r3_y
-        )
-        upu_n_m1_in_base_z = (
-        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x - axis_x_upu_axes2_z*upu_end_p1_r3_y
-        )
-        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        upu_dalpha_G_m1_in_base_y = (
-        axis_x_upu_axes2_y*upu_dalpha_G_m1_t + axis_y_upu_axes2_in_base_y*upu_dalpha_G_m1_t_2
-        )
-        upu_dalpha_G_m1_in_base_z = (
-        axis_x_upu_axes2_z*upu_dalpha_G_m1_t + axis_y_upu_axes2_in_base_z*upu_dalpha_G_m1_t_2
-        )
-        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        upu_d_G_m1_in_base_x = (
-        axis_y_upu_axes2_in_base_x*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_x*upu_d_G_m1_t_3 -
-            axis_x_upu_axes2_x*upu_d_G_m1_t
-        )
-        upu_d_G_m1_in_base_y = (
-        axis_y_upu_axes2_in_base_y*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_y*upu_d_G_m1_t_3 -
-            axis_x_upu_axes2_y*upu_d_G_m1_t
-        )
-        upu_d_G_m1_in_base_z = (
-        axis_y_upu_axes2_in_base_z*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_z*upu_d_G_m1_t_3 -
-            axis_x_upu_axes2_z*upu_d_G_m1_t
-        )
-        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_d_G_m_xx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_x
-        upu_d_G_m_xy = upu_d_G_m1_in_base_y*upu_n_m1_in_base_x
-        upu_d_G_m_xz = upu_d_G_m1_in_base_z*upu_n_m1_in_base_x
-        upu_d_G_m_yx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_y
-        # (M_aa) rotational block of M
-        upu_M_aa_t = (
-        upu_M_ta_t_7*upu_q_in_base_z + upu_d_G_m_xz*upu_q_in_base_y +
-            upu_n_m1_in_base_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_t +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_G_m1_t_2) - upu_M_ta_t_10*upu_q_in_base_y -
-            upu_d_G_m_xy*upu_q_in_base_z
-        )
-        upu_M_aa_t_2 = (
-        upu_M_ta_t_11*upu_q_in_base_y + upu_d_G_m_xx*upu_q_in_base_z +
-            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_x - upu_M_ta_t_8*upu_q_in_base_z -
-            upu_d_G_m_xz*upu_q_in_base_x
-        )
-        upu_M_aa_t_3 = (
-        upu_M_ta_t_12*upu_q_in_base_y + upu_M_ta_t_9*upu_q_in_base_z +
-            upu_d_G_m_xy*upu_q_in_base_x + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_x -
-            upu_d_G_m_xx*upu_q_in_base_y
-        )
-        upu_M_aa_t_4 = (
-        upu_M_ta_t_5*upu_q_in_base_z + upu_d_G_m_yx*upu_q_in_base_z +
-            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_y - upu_M_ta_t_11*upu_q_in_base_x -
-            upu_d_G_m1_in_base_z*upu_n_m1_in_base_y*upu_q_in_base_x
-        )
-        upu_M_aa_t_5 = (
-        upu_M_ta_t_12*upu_q_in_base_x + upu_M_ta_t_6*upu_q_in_base_z +
-            upu_d_G_m_yx*upu_q_in_base_y - upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_y -
-            upu_d_G_m1_in_base_y*upu_n_m1_in_base_y*upu_q_in_base_x
-        )
-        upu_M_aa_t_6 = (
-        upu_M_ta_t_6*upu_q_in_base_y + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_z +
-            upu_d_G_m1_in_base_y*upu_n_m1_in_base_z*upu_q_in_base_x - upu_M_ta_t_9*upu_q_in_base_x
-            - upu_d_G_m1_in_base_x*upu_n_m1_in_base_z*upu_q_in_base_y
-        )
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
-        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
-        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
-        upu_S_dot_x = t_dot_x + upu_S_dot_t
-        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
-        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        upu_o_1_t = upu_end_p1_in_axes2_y*upu_m1_w_1
+        upu_o_1_in_axes2_y = upu_m1_w_1*upu_n_m1_in_axes2_y
         # (upu-eta_1) rate at which the joints turn along moment direction 1
-        upu_eta_1 = (
-        omega_x*upu_n_m1_in_base_x + omega_y*upu_n_m1_in_base_y + omega_z*upu_n_m1_in_base_z
+        upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z
+        # (upu-qd_1) rate of joint 1
+        upu_qd_1 = (
+        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z + upu_eta_1*upu_n_c_t)
         )
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_tip_x = (
-        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
-            axis_x_upu_axes2_z*upu_S_dot_z
-        )
-        # (upu-qd_3) rate of joint 3
-        upu_qd_3_t = (
-        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
-        )
-        upu_qd_3_t_2 = (
-        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
-            upu_eta_1*upu_n_c_z)
+        # (upu-qd_2) rate of joint 2
+        upu_qd_2 = (
+        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+            axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_t = upu_qd_3_t_2*upu_s_2
-        upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2
-        # (upu-u_1) centripetal acceleration of the connection point
-        upu_u_1_x = omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
-        upu_u_1_y = omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
-        upu_u_1_z = omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
-        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t
-        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
+        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t = upu_omega_1_t*upu_omega_1_t
-        upu_W_2_t_2 = upu_omega_1_t_2*upu_omega_1_t_2
-        upu_W_2_t_3 = upu_qd_3_t*upu_qd_3_t
-        upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2
+        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
+        # (upu-u_1) centripetal acceleration of the connection point
+        upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
+        upu_u_1_y = omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
+        upu_u_1_z = omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
         # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_t = 2.0*upu_S_dot_tip_x
-        upu_bias_t_2 = upu_bias_t*upu_qd_3_t
-        upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2
-        upu_bias_z = upu_bias_t_3 + 2.0*upu_root_2*upu_zeta_2_y
+        upu_bias_t = 2.0*upu_S_dot_in_axes2_x
+        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2
         # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        upu_rel_o_z = (
-        axis_z_upu_axes2_in_base_x*upu_u_1_x + axis_z_upu_axes2_in_base_y*upu_u_1_y +
-            axis_z_upu_axes2_in_base_z*upu_u_1_z - upu_bias_z
+        upu_rel_o_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_u_1_x + axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z
+            - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_omega_tip_x = (
+        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        upu_omega_tip_y = (
-        axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
-            axis_y_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_omega_tip_z = (
-        axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
-            axis_z_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_z = (
+        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_x = (
-        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z
+        upu_nd_m1_in_axes2_x = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_y = (
-        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
-            upu_end_p1_r3_y*upu_omega_tip_z
+        upu_nd_m1_in_axes2_y = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t = (
+        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
+        )
         upu_nu_1_t_2 = (
-        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
-            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
+            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
+            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
-        # (upu-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        upu_qdd_3_o_t = (
-        axis_y_upu_axes2_in_base_x*upu_u_1_x + axis_y_upu_axes2_in_base_y*upu_u_1_y +
-            axis_y_upu_axes2_in_base_z*upu_u_1_z - upu_bias_t_2
-        )
-        upu_qdd_3_o_t_2 = inv_upu_root_2*upu_qdd_3_o_t
-        upu_qdd_3_o_t_3 = inv_upu_w_1_t_25*(upu_rel_o_z + upu_n_c_z*upu_nu_1)
+        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
+        # (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        upu_qdd_1_o = upu_w_1_in_axes2_z*(upu_rel_o_in_axes2_z + upu_n_c_t*upu_nu_1)
+        # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        upu_dalpha_alpha_1_t = upu_o_1_t*upu_s_2
+        upu_dalpha_alpha_1_in_axes2_xy = upu_o_1_in_axes2_y*upu_s_2
+        upu_dalpha_alpha_1_in_axes2_yx = -upu_c_2*upu_o_1_t
+        upu_dalpha_alpha_1_t_2 = -upu_c_2*upu_o_1_in_axes2_y
+        # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        upu_d_alpha_1_in_axes2_xz = upu_s_2*upu_w_1_in_axes2_z
+        upu_d_alpha_1_t = -upu_c_2*upu_w_1_in_axes2_z
         # (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        upu_alpha_1_o_t = upu_qdd_3_o_t_3*upu_s_2
-        upu_alpha_1_o_t_2 = upu_c_2*upu_qdd_3_o_t_3
+        upu_alpha_1_o_in_axes2_x = upu_qdd_1_o*upu_s_2
+        upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o
         # (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        upu_alpha_2_o_x = upu_alpha_1_o_t - upu_zeta_2_x
-        upu_alpha_2_o_y = -upu_alpha_1_o_t_2 - upu_zeta_2_y
+        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x
+        upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
-        upu_B_2_o_xy = -2.0*upu_W_2_xy - upu_qdd_3_o_t_2
-        upu_B_2_o_zx = upu_zeta_2_y - upu_alpha_2_o_y
-        upu_B_2_o_zy = upu_alpha_2_o_x - upu_zeta_2_x
+        upu_B_2_o_t = upu_bias_t*upu_qd_2
+        upu_B_2_o_t_2 = (
+        axis_y_upu_axes2_x*upu_u_1_x + axis_y_upu_axes2_y*upu_u_1_y + axis_y_upu_axes2_z*upu_u_1_z
+            - upu_B_2_o_t
+        )
+        upu_B_2_o_in_axes2_yx = inv_upu_root_2*upu_B_2_o_t_2
+        upu_B_2_o_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx
+        upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y
+        upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x
+        # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yx*upu_root_2
+        upu_dalpha_acc_3_in_axes2_zy = upu_dalpha_alpha_1_t_2*upu_root_2
+        # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_root_2
         # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x
-        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
-        upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y
-        upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2
-        upu_acc_3_o_x = (
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t
+        upu_acc_3_o_t = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_o_t*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_o_t*upu_s_2 + upu_acc_3_t_3*upu_c_2
+        upu_acc_3_o_in_axes2_x = (
         axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
-            - upu_g_r3_x
+            - upu_g_in_axes2_x
         )
-        upu_acc_3_o_y = upu_bias_t_2 + upu_qdd_3_o_t - upu_g_r3_y
-        upu_acc_3_o_z = upu_bias_t_3 + upu_B_2_o_zx*upu_root_2 - upu_g_r1_x
+        upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y
+        upu_acc_3_o_in_axes2_z = (
+        upu_B_2_o_in_axes2_zx*upu_root_2 - upu_bias_t_2 - upu_g_in_axes2_z
+        )
+        # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        upu_dalpha_phi_3_in_axes2_xx = upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_y
+        # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        upu_d_phi_3_in_axes2_xy = inv_upu_root_2*upu_h_3_in_spec2_z
         # (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
-        upu_f_3_o_x = (
-        upu_acc_3_o_x*upu_link3_mass - upu_B_2_o_xy*upu_h_3_z - upu_alpha_1_o_t_2*upu_h_3_y -
-            upu_h_3_x*(upu_W_2_t_2 + upu_W_2_t_3)
+        upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
+        upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_f_3_o_t_3 = upu_qd_2*upu_qd_2
+        upu_f_3_o_in_axes2_x = (
+        upu_acc_3_o_in_axes2_x*upu_link3_mass + upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y -
+            upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_f_3_o_t_2 +
+            upu_f_3_o_t_3)
         )
-        upu_f_3_o_y = (
-        upu_acc_3_o_y*upu_link3_mass + upu_h_3_x*upu_qdd_3_o_t_2 + upu_h_3_z*(upu_W_2_t +
-            upu_W_2_t_3) - upu_alpha_1_o_t*upu_h_3_y
+        upu_f_3_o_in_axes2_y = (
+        upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_y*upu_link3_mass +
+            upu_h_3_in_spec2_z*(upu_f_3_o_t + upu_f_3_o_t_3) -
+            upu_alpha_1_o_in_axes2_x*upu_h_3_in_spec2_y
         )
-        upu_f_3_o_z = (
-        upu_B_2_o_zx*upu_h_3_x + upu_acc_3_o_z*upu_link3_mass - upu_B_2_o_zy*upu_h_3_z -
-            upu_h_3_y*(upu_W_2_t + upu_W_2_t_2)
+        upu_f_3_o_in_axes2_z = (
+        upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_z*upu_link3_mass -
+            upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_o_t +
+            upu_f_3_o_t_2)
         )
         # (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        upu_mu_2_o_x = (
-        upu_B_2_o_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_3_o_t_2 +
-            upu_J_group_2_yz*(upu_W_2_t_2 - upu_W_2_t_3) + upu_Sigma_2_zz*upu_alpha_1_o_t +
-            upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_o_zx*upu_J_group_2_xy -
-            upu_acc_3_o_y*upu_h_3_y - upu_acc_3_o_z*upu_h_3_z
+        upu_mu_2_o_in_axes2_x = (
+        upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+            upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_f_3_o_t_3) +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y
+            + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
+            upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
+            upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
         )
-        upu_mu_2_o_y = (
-        upu_B_2_o_zy*upu_J_group_2_xy + upu_acc_3_o_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x -
-            upu_B_2_o_xy*upu_J_group_2_yz - upu_B_2_o_zx*upu_Sigma_2_xx -
-            upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_3) - upu_Sigma_2_zz*upu_alpha_1_o_t_2 -
-            upu_acc_3_o_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y
+        upu_mu_2_o_in_axes2_y = (
+        upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
+            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
+            - upu_f_3_o_t_3) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x -
+            upu_g_in_axes2_x*upu_h_2_in_spec2_y
         )
-        upu_mu_2_o_z = (
-        upu_J_group_2_xy*(upu_W_2_t - upu_W_2_t_2) + upu_J_group_2_xz*upu_alpha_1_o_t +
-            upu_Sigma_2_xx*upu_qdd_3_o_t_2 + upu_acc_3_o_x*upu_h_3_z + upu_acc_3_o_y*upu_h_3_x -
-            upu_B_2_o_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_o_t_2 -
-            upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x
+        upu_mu_2_o_in_axes2_z = (
+        upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_o_t -
+            upu_f_3_o_t_2) + upu_J_group_2_in_axes2_xz*upu_alpha_1_o_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
+            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z
+            - upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        upu_N_2_o_y = upu_mu_2_o_y - upu_f_3_o_z*upu_root_2
-        upu_N_2_o_r0_y = upu_mu_2_o_x*upu_s_2 - upu_N_2_o_y*upu_c_2
+        upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_root_2
+        upu_N_2_o_in_axes1_z = upu_N_2_o_in_axes2_y*upu_c_2 + upu_mu_2_o_in_axes2_x*upu_s_2
+        # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        upu_dalpha_Gamma_1_in_axes2_x = (
+        upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
+            - upu_root_2*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z -
+            upu_dalpha_acc_3_t*upu_link3_mass -
+            upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_x)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
+            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t)
+        )
+        upu_dalpha_Gamma_1_in_axes2_y = (
+        upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_x -
+            upu_root_2*(upu_dalpha_acc_3_in_axes2_zy*upu_link3_mass +
+            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
+            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_z)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_z)
+        )
+        # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        upu_d_Gamma_1_in_axes2_z = (
+        upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
+            - upu_root_2*(upu_d_acc_3_in_axes2_zz*upu_link3_mass +
+            upu_d_alpha_1_t*upu_h_3_in_spec2_x - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
+            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z)
+        )
+        # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z
+        upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z
+        upu_dalpha_G_in_axes2_yx = (
+        inv_upu_root_2*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_root_2 -
+            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t)
+        )
+        upu_dalpha_G_in_axes2_yy = (
+        inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_y*upu_root_2)
+        )
+        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_d_G_in_axes2_yz = (
+        inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
+            upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_root_2)
+        )
         # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_G_o_t = upu_f_3_o_y + inv_upu_root_2*upu_mu_2_o_z
-        upu_G_o_t_2 = inv_upu_w_1_t_25*upu_N_2_o_r0_y
-        upu_G_o_t_3 = inv_upu_w_1_t_25*upu_N_2_o_r0_y*upu_n_c_z
-        # (upu-U) velocity and gravity terms of the leg force
-        upu_U_in_base_x = (
-        axis_x_upu_axes2_x*upu_f_3_o_x + axis_y_upu_axes2_in_base_x*upu_G_o_t +
-            axis_z_upu_axes2_in_base_x*upu_G_o_t_2
+        upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_root_2*upu_mu_2_o_in_axes2_z
+        upu_G_o_in_axes2_z = upu_N_2_o_in_axes1_z*upu_w_1_in_axes2_z
+        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_dalpha_G_m1_in_axes2_x = upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1
+        upu_dalpha_G_m1_in_axes2_y = upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1
+        upu_dalpha_G_m1_y = (
+        axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y
         )
-        upu_U_in_base_y = (
-        axis_x_upu_axes2_y*upu_f_3_o_x + axis_y_upu_axes2_in_base_y*upu_G_o_t +
-            axis_z_upu_axes2_in_base_y*upu_G_o_t_2
+        upu_dalpha_G_m1_z = (
+        axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y
         )
-        upu_U_in_base_z = (
-        axis_x_upu_axes2_z*upu_f_3_o_x + axis_y_upu_axes2_in_base_z*upu_G_o_t +
-            axis_z_upu_axes2_in_base_z*upu_G_o_t_2
+        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1
+        upu_d_G_m1_in_axes2_y = (
+        upu_m1_w_1*(upu_s_2*(inv_upu_root_2*upu_J_group_2_in_axes2_xz - upu_h_3_in_spec2_y) +
+            inv_upu_root_2*upu_J_group_2_in_axes2_yz*upu_c_2)
         )
+        upu_d_G_m1_in_axes2_z = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1
+        upu_d_G_m1_x = (
+        axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_x*upu_d_G_m1_in_axes2_y +
+            axis_z_upu_axes2_x*upu_d_G_m1_in_axes2_z
+        )
+        upu_d_G_m1_y = (
+        axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_y*upu_d_G_m1_in_axes2_y +
+            axis_z_upu_axes2_y*upu_d_G_m1_in_axes2_z
+        )
+        upu_d_G_m1_z = (
+        axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_z*upu_d_G_m1_in_axes2_y +
+            axis_z_upu_axes2_z*upu_d_G_m1_in_axes2_z
+        )
+        # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_G_m1_o = upu_N_2_o_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
+        # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
+        upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x
+        upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x
+        upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y
         # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_G_m_o_x = upu_G_o_t_3*upu_end_p1_r3_y
-        upu_G_m_o_y = upu_G_o_t_3*upu_end_p1_r3_x
+        upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
+        # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        upu_dalpha_c_in_axes2_xy = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
+        # (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y
+        # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
+        upu_Q_t = (
+        inv_upu_root_2*(upu_h_3_in_spec2_x + inv_upu_root_2*upu_J_group_2_in_axes2_zz +
+            upu_root_2*(upu_link3_mass + inv_upu_root_2*upu_h_3_in_spec2_x)) - upu_link3_mass
+        )
+        upu_Q_t_2 = 0.5*upu_Q_t
+        upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*upu_w_1_in_axes2_z - upu_link3_mass
+        upu_Q_t_4 = 0.5*upu_Q_t_3
+        upu_Q_t_5 = (
+        axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy + axis_y_upu_axes2_x*upu_Q_t_2 +
+            axis_z_upu_axes2_x*upu_d_G_in_axes2_yz
+        )
+        upu_Q_t_6 = (
+        axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy + axis_y_upu_axes2_y*upu_Q_t_2 +
+            axis_z_upu_axes2_y*upu_d_G_in_axes2_yz
+        )
+        upu_Q_t_7 = (
+        axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy + axis_y_upu_axes2_z*upu_Q_t_2 +
+            axis_z_upu_axes2_z*upu_d_G_in_axes2_yz
+        )
+        upu_Q_t_8 = axis_z_upu_axes2_x*upu_Q_t_4 - axis_x_upu_axes2_x*upu_d_c_in_axes2_xz
+        upu_Q_t_9 = axis_z_upu_axes2_y*upu_Q_t_4 - axis_x_upu_axes2_y*upu_d_c_in_axes2_xz
+        upu_Q_t_10 = axis_z_upu_axes2_z*upu_Q_t_4 - axis_x_upu_axes2_z*upu_d_c_in_axes2_xz
+        upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_8
+        upu_Q_xx = 2.0*upu_Q_t_11 + upu_link3_mass
+        upu_Q_xy = (
+        axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_9
+            + axis_z_upu_axes2_y*upu_Q_t_8
+        )
+        upu_Q_xz = (
+        axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
+            axis_z_upu_axes2_x*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_8
+        )
+        upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + axis_z_upu_axes2_y*upu_Q_t_9
+        upu_Q_yy = 2.0*upu_Q_t_12 + upu_link3_mass
+        upu_Q_yz = (
+        axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
+            axis_z_upu_axes2_y*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_9
+        )
+        upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + axis_z_upu_axes2_z*upu_Q_t_10
+        upu_Q_zz = 2.0*upu_Q_t_13 + upu_link3_mass
+        # (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
+        # (upu-U) velocity and gravity terms of the leg force
+        upu_U_x = (
+        axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_x*upu_G_o_in_axes2_y +
+            axis_z_upu_axes2_x*upu_G_o_in_axes2_z
+        )
+        upu_U_y = (
+        axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_y*upu_G_o_in_axes2_y +
+            axis_z_upu_axes2_y*upu_G_o_in_axes2_z
+        )
+        upu_U_z = (
+        axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_z*upu_G_o_in_axes2_y +
+            axis_z_upu_axes2_z*upu_G_o_in_axes2_z
+        )
+        # (M_ta) coupling block of M
+        upu_M_ta_t = (
+        -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx
+        )
+        upu_M_ta_t_2 = (
+        -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx
+        )
+        upu_M_ta_t_3 = (
+        -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx
+        )
+        upu_M_ta_t_4 = (
+        axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy
+            - axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy
+        )
+        upu_M_ta_t_5 = (
+        axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy
+            - axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy
+        )
+        upu_M_ta_t_6 = (
+        axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy
+            - axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy
+        )
+        upu_M_ta_t_7 = upu_Q_xy*upu_q_z
+        upu_M_ta_t_8 = upu_Q_xz*upu_q_y
+        upu_M_ta_t_9 = upu_Q_yz*upu_q_x
+        upu_M_ta_t_10 = (
+        upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
+            axis_y_upu_axes2_x*upu_M_ta_t_4
+        )
+        upu_M_ta_t_11 = (
+        upu_Q_xx*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t - axis_y_upu_axes2_y*upu_M_ta_t_4 -
+            upu_Q_xz*upu_q_x
+        )
+        upu_M_ta_t_12 = (
+        upu_Q_xy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t - axis_y_upu_axes2_z*upu_M_ta_t_4 -
+            upu_Q_xx*upu_q_y
+        )
+        upu_M_ta_t_13 = (
+        upu_Q_yz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 - axis_y_upu_axes2_x*upu_M_ta_t_5 -
+            upu_Q_yy*upu_q_z
+        )
+        upu_M_ta_t_14 = (
+        upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
+            axis_y_upu_axes2_y*upu_M_ta_t_5
+        )
+        upu_M_ta_t_15 = (
+        upu_Q_yy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 - axis_y_upu_axes2_z*upu_M_ta_t_5 -
+            upu_Q_xy*upu_q_y
+        )
+        upu_M_ta_t_16 = (
+        upu_Q_zz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 - axis_y_upu_axes2_x*upu_M_ta_t_6 -
+            upu_Q_yz*upu_q_z
+        )
+        upu_M_ta_t_17 = (
+        upu_Q_xz*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 - axis_y_upu_axes2_y*upu_M_ta_t_6 -
+            upu_Q_zz*upu_q_x
+        )
+        upu_M_ta_t_18 = (
+        upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
+            axis_y_upu_axes2_z*upu_M_ta_t_6
+        )
+        # (M_aa) rotational block of M
+        upu_M_aa_t = (
+        upu_M_ta_t_16*upu_q_y + upu_d_G_m_xz*upu_q_y +
+            upu_n_m1_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_x*upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*upu_q_z -
+            upu_d_G_m_xy*upu_q_z
+        )
+        upu_M_aa_t_2 = (
+        upu_M_ta_t_17*upu_q_y + upu_d_G_m_xx*upu_q_z + upu_dalpha_G_m1_y*upu_n_m1_x -
+            upu_M_ta_t_14*upu_q_z - upu_d_G_m_xz*upu_q_x
+        )
+        upu_M_aa_t_3 = (
+        upu_M_ta_t_18*upu_q_y + upu_d_G_m_xy*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_x -
+            upu_M_ta_t_15*upu_q_z - upu_d_G_m_xx*upu_q_y
+        )
+        upu_M_aa_t_4 = (
+        upu_M_ta_t_11*upu_q_z + upu_d_G_m_yx*upu_q_z + upu_dalpha_G_m1_y*upu_n_m1_y -
+            upu_M_ta_t_17*upu_q_x - upu_d_G_m1_z*upu_n_m1_y*upu_q_x
+        )
+        upu_M_aa_t_5 = (
+        upu_M_ta_t_12*upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y + upu_d_G_m1_y*upu_n_m1_y*upu_q_x -
+            upu_M_ta_t_18*upu_q_x - upu_d_G_m_yx*upu_q_y
+        )
+        upu_M_aa_t_6 = (
+        upu_M_ta_t_15*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z + upu_d_G_m1_y*upu_n_m1_z*upu_q_x -
+            upu_M_ta_t_12*upu_q_y - upu_d_G_m1_x*upu_n_m1_z*upu_q_y
+        )
         # (Z_a) rotational part of Z
         upu_Z_a_t = (
-        axis_y_upu_axes2_in_base_x*upu_G_m_o_y + upu_U_in_base_z*upu_q_in_base_y -
-            axis_x_upu_axes2_x*upu_G_m_o_x - upu_U_in_base_y*upu_q_in_base_z
+        axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*upu_q_y -
+            axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*upu_q_z
         )
         upu_Z_a_t_2 = (
-        axis_y_upu_axes2_in_base_y*upu_G_m_o_y + upu_U_in_base_x*upu_q_in_base_z -
-            axis_x_upu_axes2_y*upu_G_m_o_x - upu_U_in_base_z*upu_q_in_base_x
+        axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*upu_q_z -
+            axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*upu_q_x
         )
         upu_Z_a_t_3 = (
-        axis_y_upu_axes2_in_base_z*upu_G_m_o_y + upu_U_in_base_y*upu_q_in_base_x -
-            axis_x_upu_axes2_z*upu_G_m_o_x - upu_U_in_base_x*upu_q_in_base_y
+        axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*upu_q_x -
+            axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*upu_q_y
         )
         # (upu-H_a_3) moment of the column's unit force about the platform origin
-        upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y - axis_x_upu_axes2_y*upu_q_in_base_z
-        upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z - axis_x_upu_axes2_z*upu_q_in_base_x
-        upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x - axis_x_upu_axes2_x*upu_q_in_base_y
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
-        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
-        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
+        upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z
+        upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x
+        upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
-        upu_Hk_a_1_x = (
-        upu_n_m1_in_base_x + upu_n_c_t_2*upu_q_in_base_z - upu_n_c_t_3*upu_q_in_base_y
-        )
-        upu_Hk_a_1_y = (
-        upu_n_m1_in_base_y + upu_n_c_t_3*upu_q_in_base_x - upu_n_c_t*upu_q_in_base_z
-        )
-        upu_Hk_a_1_z = (
-        upu_n_m1_in_base_z + upu_n_c_t*upu_q_in_base_y - upu_n_c_t_2*upu_q_in_base_x
-        )
+        upu_Hk_a_1_x = upu_n_m1_x + upu_n_c_t_3*upu_q_z - upu_n_c_t_4*upu_q_y
+        upu_Hk_a_1_y = upu_n_m1_y + upu_n_c_t_4*upu_q_x - upu_n_c_t_2*upu_q_z
+        upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_t_2*upu_q_y - upu_n_c_t_3*upu_q_x
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-        upu_gamma_c1 = upu_nu_1 - upu_n_c_z*upu_rel_o_z
+        upu_gamma_c1 = upu_nu_1 - upu_n_c_t*upu_rel_o_in_axes2_z
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        upu_Q_t_12, upu_Q_t_13, upu_Q_t_14, upu_Q_t_16, upu_Q_t_17, upu_Q_t_19, upu_M_ta_t_4,
-            upu_M_ta_t_5, upu_M_ta_t_6, upu_M_ta_t_7, upu_M_ta_t_8, upu_M_ta_t_9,
-            upu_M_ta_t_10, upu_M_ta_t_11, upu_M_ta_t_12, upu_M_aa_t, upu_M_aa_t_2,
-            upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6, upu_U_in_base_x,
-            upu_U_in_base_y, upu_U_in_base_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3,
+        upu_Q_xx, upu_Q_xy, upu_Q_xz, upu_Q_yy, upu_Q_yz, upu_Q_zz, upu_M_ta_t_10,
+            upu_M_ta_t_11, upu_M_ta_t_12, upu_M_ta_t_13, upu_M_ta_t_14, upu_M_ta_t_15,
+            upu_M_ta_t_16, upu_M_ta_t_17, upu_M_ta_t_18, upu_M_aa_t, upu_M_aa_t_2,
+            upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6, upu_U_x, upu_U_y, upu_U_z,
+            upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3,
         ))
+        # (upu-w_3) force part of reciprocal wrench 3
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
         out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
-        out_H[_H_upu[3][leg]] = upu_H_a_3_t
-        out_H[_H_upu[4][leg]] = upu_H_a_3_t_2
-        out_H[_H_upu[5][leg]] = upu_H_a_3_t_3
-        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t
-        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_2
-        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_3
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        out_H[_H_upu[3][leg]] = upu_H_a_3_x
+        out_H[_H_upu[4][leg]] = upu_H_a_3_y
+        out_H[_H_upu[5][leg]] = upu_H_a_3_z
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
+        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
+        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
         out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
+        # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_upu[0][leg]] = upu_gamma_c1
     (
-    total_upu_xx, total_upu_xy, total_upu_xz, total_upu_yy, total_upu_yz, total_upu_zz,
-        total_upu_xx_2, total_upu_xy_2, total_upu_xz_2, total_upu_yx, total_upu_yy_2,
-        total_upu_yz_2, total_upu_zx, total_upu_zy, total_upu_zz_2, total_upu_xx_3,
-        total_upu_xy_3, total_upu_xz_3, total_upu_yy_3, total_upu_yz_3, total_upu_zz_3,
-        total_upu_x, total_upu_y, total_upu_z, total_upu_x_2, total_upu_y_2, total_upu_z_2,
+    M_tt_upu_xx, M_tt_xy, M_tt_xz, M_tt_upu_yy, M_tt_yz, M_tt_upu_zz, M_ta_xx, M_ta_upu_xy,
+        M_ta_upu_xz, M_ta_upu_yx, M_ta_yy, M_ta_upu_yz, M_ta_upu_zx, M_ta_upu_zy, M_ta_zz,
+        M_aa_upu_xx, M_aa_upu_xy, M_aa_upu_xz, M_aa_upu_yy, M_aa_upu_yz, M_aa_upu_zz, Z_t_upu_x,
+        Z_t_upu_y, Z_t_upu_z, Z_a_upu_x, Z_a_upu_y, Z_a_upu_z,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = platform_mass + total_upu_xx
-    M_tt_yy = platform_mass + total_upu_yy
-    M_tt_zz = platform_mass + total_upu_zz
+    M_tt_xx = M_tt_upu_xx + platform_mass
+    M_tt_yy = M_tt_upu_yy + platform_mass
+    M_tt_zz = M_tt_upu_zz + platform_mass
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z + total_upu_xy_2
-    M_ta_xz = -h_star_in_base_y - total_upu_xz_2
-    M_ta_yx = -h_star_in_base_z - total_upu_yx
-    M_ta_yz = h_star_in_base_x - total_upu_yz_2
-    M_ta_zx = h_star_in_base_y - total_upu_zx
-    M_ta_zy = total_upu_zy - h_star_in_base_x
+    M_ta_xy = M_ta_upu_xy + h_star_z
+    M_ta_xz = M_ta_upu_xz - h_star_y
+    M_ta_yx = M_ta_upu_yx - h_star_z
+    M_ta_yz = M_ta_upu_yz + h_star_x
+    M_ta_zx = M_ta_upu_zx + h_star_y
+    M_ta_zy = M_ta_upu_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_10 + total_upu_xx_3
-    M_aa_xy = J_star_t_11 + total_upu_xy_3
-    M_aa_xz = J_star_t_12 + total_upu_xz_3
-    M_aa_yy = J_star_t_14 + total_upu_yy_3
-    M_aa_yz = J_star_t_15 - total_upu_yz_3
-    M_aa_zz = J_star_t_17 + total_upu_zz_3
+    M_aa_xx = J_star_xx + M_aa_upu_xx
+    M_aa_xy = J_star_xy + M_aa_upu_xy
+    M_aa_xz = J_star_xz + M_aa_upu_xz
+    M_aa_yy = J_star_yy + M_aa_upu_yy
+    M_aa_yz = J_star_yz + M_aa_upu_yz
+    M_aa_zz = J_star_zz + M_aa_upu_zz
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_upu_x
-    Z_t_y = Z_p_y + total_upu_y
-    Z_t_z = Z_p_z + total_upu_z
+    Z_t_x = Z_p_x + Z_t_upu_x
+    Z_t_y = Z_p_y + Z_t_upu_y
+    Z_t_z = Z_p_z + Z_t_upu_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_upu_x_2
-    Z_a_y = Z_q_in_base_y + total_upu_y_2
-    Z_a_z = Z_q_in_base_z + total_upu_z_2
+    Z_a_x = Z_a_upu_x + Z_q_x
+    Z_a_y = Z_a_upu_y + Z_q_y
+    Z_a_z = Z_a_upu_z + Z_q_z
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = total_upu_xy
-    out_M[6] = total_upu_xy
-    out_M[2] = total_upu_xz
-    out_M[12] = total_upu_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = total_upu_yz
-    out_M[13] = total_upu_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = -total_upu_xx_2
-    out_M[18] = -total_upu_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = total_upu_yy_2
-    out_M[25] = total_upu_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = total_upu_zz_2
-    out_M[32] = total_upu_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2118,9 +2174,11 @@ def _run_dynamics(m, X, V):
     out_M[29] = M_aa_yz
     out_M[34] = M_aa_yz
     out_M[35] = M_aa_zz
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -2132,8 +2190,9 @@ def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
     (
-    J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
-        h_star_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yz,
+        J_star_t_6, J_star_t_8, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
+        platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2173,50 +2232,51 @@ def _run_M(m, X):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_M = m.zeros("M")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (J_star) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy
-    J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx
-    J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz - J_star_t_6*R_xy
+    J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz - J_star_t_6*R_yy
+    J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz - J_star_t_6*R_zy
+    J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx
+    J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx
+    J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx
     J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz
-    J_star_t_10 = 2.0*J_star_t_9 + J_star_xx
-    J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
-    J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
-    J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz
-    J_star_t_14 = 2.0*J_star_t_13 + J_star_xx
-    J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
-    J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
-    J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
+    J_star_xx = J_star_in_platform_xx + 2.0*J_star_t_9
+    J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
+    J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz - J_star_t_7*R_xz
+    J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz
+    J_star_yy = J_star_in_platform_xx + 2.0*J_star_t_10
+    J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
+    J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz
+    J_star_zz = J_star_in_platform_xx + 2.0*J_star_t_11
     sums = [0.0] * 21
     for leg, k in legs[0]:
         (
-        upu_J_group_2_xx, upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yy, upu_J_group_2_yz,
-            upu_J_group_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_3_x, upu_h_3_y, upu_h_3_z,
+        upu_J_group_2_in_axes2_xx, upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz,
+            upu_J_group_2_in_axes2_yy, upu_J_group_2_in_axes2_yz, upu_J_group_2_in_axes2_zz,
+            upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
+            upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
+            upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_branch_1,
+            upu_branch_2, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y, upu_h_3_in_spec2_z,
             upu_link3_mass, upu_platform_joint_axis_platform_x,
             upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
             upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -2229,397 +2289,404 @@ def _run_M(m, X):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
-        # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
-        # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_n_m1_t_5 = upu_s_1*upu_s_2
+        upu_n_m1_t_6 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_base_frame_xx*upu_n_m1_t_5 + upu_base_frame_xy*upu_n_m1_t_6 +
+            upu_base_frame_xz*upu_c_2
         )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
+        axis_y_upu_axes2_y = (
+        upu_base_frame_yx*upu_n_m1_t_5 + upu_base_frame_yy*upu_n_m1_t_6 +
+            upu_base_frame_yz*upu_c_2
         )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
+        axis_y_upu_axes2_z = (
+        upu_base_frame_zx*upu_n_m1_t_5 + upu_base_frame_zy*upu_n_m1_t_6 +
+            upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
         )
         axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
         )
         axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
         )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
-        upu_w_1_t_4 = inv_upu_w_1_t_25*upu_n_c_z
-        # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_d_alpha_1_t = inv_upu_w_1_t_25*upu_s_2
-        upu_d_alpha_1_t_2 = inv_upu_w_1_t_25*upu_c_2
-        # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_d_acc_3_t = upu_d_alpha_1_t_2*upu_root_2
-        # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_d_phi_3_t = inv_upu_root_2*upu_h_3_z
-        upu_d_phi_3_t_2 = upu_d_alpha_1_t_2*upu_h_3_y
-        # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        upu_d_Gamma_1_z = (
-        upu_s_2*(upu_J_group_2_xx*upu_d_alpha_1_t - upu_J_group_2_xy*upu_d_alpha_1_t_2 -
-            upu_d_acc_3_t*upu_h_3_z) - upu_c_2*(upu_J_group_2_xy*upu_d_alpha_1_t -
-            upu_J_group_2_yy*upu_d_alpha_1_t_2 - upu_d_acc_3_t*upu_h_3_x -
-            upu_root_2*(upu_d_acc_3_t*upu_link3_mass + upu_d_alpha_1_t_2*upu_h_3_x -
-            upu_d_alpha_1_t*upu_h_3_z))
+        upu_n_m1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
-        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_d_G_t = (
-        inv_upu_root_2*(upu_J_group_2_xz*upu_d_alpha_1_t - upu_J_group_2_yz*upu_d_alpha_1_t_2 -
-            upu_d_alpha_1_t*upu_h_3_y*upu_root_2)
+        upu_n_m1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
         )
-        # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
-        upu_Q_t = (
-        inv_upu_root_2*(upu_h_3_x + inv_upu_root_2*upu_J_group_2_zz + upu_root_2*(upu_link3_mass +
-            inv_upu_root_2*upu_h_3_x)) - upu_link3_mass
+        upu_n_m1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
         )
-        upu_Q_t_2 = 0.5*upu_Q_t
-        upu_Q_t_3 = inv_upu_w_1_t_25*upu_d_Gamma_1_z - upu_link3_mass
-        upu_Q_t_4 = 0.5*upu_Q_t_3
-        upu_Q_t_5 = (
-        axis_x_upu_axes2_x*upu_d_phi_3_t + axis_y_upu_axes2_in_base_x*upu_Q_t_2 +
-            axis_z_upu_axes2_in_base_x*upu_d_G_t
-        )
-        upu_Q_t_6 = (
-        axis_x_upu_axes2_y*upu_d_phi_3_t + axis_y_upu_axes2_in_base_y*upu_Q_t_2 +
-            axis_z_upu_axes2_in_base_y*upu_d_G_t
-        )
-        upu_Q_t_7 = (
-        axis_x_upu_axes2_z*upu_d_phi_3_t + axis_y_upu_axes2_in_base_z*upu_Q_t_2 +
-            axis_z_upu_axes2_in_base_z*upu_d_G_t
-        )
-        upu_Q_t_8 = axis_z_upu_axes2_in_base_x*upu_Q_t_4 - axis_x_upu_axes2_x*upu_d_phi_3_t_2
-        upu_Q_t_9 = axis_z_upu_axes2_in_base_y*upu_Q_t_4 - axis_x_upu_axes2_y*upu_d_phi_3_t_2
-        upu_Q_t_10 = axis_z_upu_axes2_in_base_z*upu_Q_t_4 - axis_x_upu_axes2_z*upu_d_phi_3_t_2
-        upu_Q_t_11 = axis_y_upu_axes2_in_base_x*upu_Q_t_5 + axis_z_upu_axes2_in_base_x*upu_Q_t_8
-        upu_Q_t_12 = 2.0*upu_Q_t_11 + upu_link3_mass
-        upu_Q_t_13 = (
-        axis_y_upu_axes2_in_base_x*upu_Q_t_6 + axis_y_upu_axes2_in_base_y*upu_Q_t_5 +
-            axis_z_upu_axes2_in_base_x*upu_Q_t_9 + axis_z_upu_axes2_in_base_y*upu_Q_t_8
-        )
-        upu_Q_t_14 = (
-        axis_y_upu_axes2_in_base_x*upu_Q_t_7 + axis_y_upu_axes2_in_base_z*upu_Q_t_5 +
-            axis_z_upu_axes2_in_base_x*upu_Q_t_10 + axis_z_upu_axes2_in_base_z*upu_Q_t_8
-        )
-        upu_Q_t_15 = axis_y_upu_axes2_in_base_y*upu_Q_t_6 + axis_z_upu_axes2_in_base_y*upu_Q_t_9
-        upu_Q_t_16 = 2.0*upu_Q_t_15 + upu_link3_mass
-        upu_Q_t_17 = (
-        axis_y_upu_axes2_in_base_y*upu_Q_t_7 + axis_y_upu_axes2_in_base_z*upu_Q_t_6 +
-            axis_z_upu_axes2_in_base_y*upu_Q_t_10 + axis_z_upu_axes2_in_base_z*upu_Q_t_9
-        )
-        upu_Q_t_18 = axis_y_upu_axes2_in_base_z*upu_Q_t_7 + axis_z_upu_axes2_in_base_z*upu_Q_t_10
-        upu_Q_t_19 = 2.0*upu_Q_t_18 + upu_link3_mass
+        # (upu-volume_c) triple product of the velocity vectors
+        upu_volume_c_t = upu_root_1*upu_root_2
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        # (upu-w_1) force part of reciprocal wrench 1
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
+        # (upu-m1_w_1) moment part 1 of reciprocal wrench 1
+        upu_m1_w_1 = upu_n_c_t*upu_w_1_in_axes2_z
         # (upu-o_1) moment part of reciprocal wrench 1
-        upu_o_1_x = upu_end_p1_r3_y*upu_w_1_t_4
-        upu_o_1_y = upu_end_p1_r3_x*upu_w_1_t_4
+        upu_o_1_t = upu_end_p1_in_axes2_y*upu_m1_w_1
+        upu_o_1_in_axes2_y = upu_m1_w_1*upu_n_m1_in_axes2_y
         # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_dalpha_alpha_1_xx = upu_o_1_x*upu_s_2
-        upu_dalpha_alpha_1_xy = upu_o_1_y*upu_s_2
-        upu_dalpha_alpha_1_yx = upu_c_2*upu_o_1_x
-        upu_dalpha_alpha_1_yy = upu_c_2*upu_o_1_y
+        upu_dalpha_alpha_1_t = upu_o_1_t*upu_s_2
+        upu_dalpha_alpha_1_in_axes2_xy = upu_o_1_in_axes2_y*upu_s_2
+        upu_dalpha_alpha_1_in_axes2_yx = -upu_c_2*upu_o_1_t
+        upu_dalpha_alpha_1_t_2 = -upu_c_2*upu_o_1_in_axes2_y
+        # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
+        upu_d_alpha_1_in_axes2_xz = upu_s_2*upu_w_1_in_axes2_z
+        upu_d_alpha_1_t = -upu_c_2*upu_w_1_in_axes2_z
         # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_yx*upu_root_2
-        upu_dalpha_acc_3_t_2 = upu_dalpha_alpha_1_yy*upu_root_2
+        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yx*upu_root_2
+        upu_dalpha_acc_3_in_axes2_zy = upu_dalpha_alpha_1_t_2*upu_root_2
+        # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
+        upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_root_2
         # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_dalpha_phi_3_t = upu_dalpha_alpha_1_yx*upu_h_3_y
-        upu_dalpha_phi_3_t_2 = upu_dalpha_alpha_1_yy*upu_h_3_y
+        upu_dalpha_phi_3_in_axes2_xx = upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_y
+        # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+        upu_d_phi_3_in_axes2_xy = inv_upu_root_2*upu_h_3_in_spec2_z
         # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        upu_dalpha_Gamma_1_x = (
-        upu_s_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_z -
-            upu_J_group_2_xx*upu_dalpha_alpha_1_xx) -
-            upu_c_2*(upu_J_group_2_yy*upu_dalpha_alpha_1_yx + upu_dalpha_acc_3_t*upu_h_3_x -
-            upu_J_group_2_xy*upu_dalpha_alpha_1_xx - upu_root_2*(upu_dalpha_alpha_1_xx*upu_h_3_z -
-            upu_dalpha_acc_3_t*upu_link3_mass - upu_dalpha_alpha_1_yx*upu_h_3_x))
+        upu_dalpha_Gamma_1_in_axes2_x = (
+        upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
+            - upu_root_2*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z -
+            upu_dalpha_acc_3_t*upu_link3_mass -
+            upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_x)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
+            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t)
         )
-        upu_dalpha_Gamma_1_y = (
-        upu_s_2*(upu_J_group_2_xx*upu_dalpha_alpha_1_xy - upu_J_group_2_xy*upu_dalpha_alpha_1_yy -
-            upu_dalpha_acc_3_t_2*upu_h_3_z) - upu_c_2*(upu_J_group_2_xy*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_yy*upu_dalpha_alpha_1_yy - upu_dalpha_acc_3_t_2*upu_h_3_x -
-            upu_root_2*(upu_dalpha_acc_3_t_2*upu_link3_mass + upu_dalpha_alpha_1_yy*upu_h_3_x -
-            upu_dalpha_alpha_1_xy*upu_h_3_z))
+        upu_dalpha_Gamma_1_in_axes2_y = (
+        upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_x -
+            upu_root_2*(upu_dalpha_acc_3_in_axes2_zy*upu_link3_mass +
+            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
+            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_z)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_z)
+        )
+        # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+        upu_d_Gamma_1_in_axes2_z = (
+        upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
+            - upu_root_2*(upu_d_acc_3_in_axes2_zz*upu_link3_mass +
+            upu_d_alpha_1_t*upu_h_3_in_spec2_x - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z)) +
+            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
+            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z)
         )
         # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_dalpha_G_t = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_x
-        upu_dalpha_G_t_2 = inv_upu_w_1_t_25*upu_dalpha_Gamma_1_y
-        upu_dalpha_G_t_3 = (
-        inv_upu_root_2*(upu_J_group_2_yz*upu_dalpha_alpha_1_yx +
-            upu_dalpha_alpha_1_xx*upu_h_3_y*upu_root_2 - upu_J_group_2_xz*upu_dalpha_alpha_1_xx)
+        upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z
+        upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z
+        upu_dalpha_G_in_axes2_yx = (
+        inv_upu_root_2*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yx +
+            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_root_2 -
+            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t)
         )
-        upu_dalpha_G_t_4 = (
-        inv_upu_root_2*(upu_J_group_2_xz*upu_dalpha_alpha_1_xy -
-            upu_J_group_2_yz*upu_dalpha_alpha_1_yy - upu_dalpha_alpha_1_xy*upu_h_3_y*upu_root_2)
+        upu_dalpha_G_in_axes2_yy = (
+        inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xy -
+            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_y*upu_root_2)
         )
-        # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        upu_dalpha_c_in_base_x = (
-        -axis_x_upu_axes2_x*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t
-        )
-        upu_dalpha_c_in_base_y = (
-        -axis_x_upu_axes2_y*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t
-        )
-        upu_dalpha_c_in_base_z = (
-        -axis_x_upu_axes2_z*upu_dalpha_phi_3_t - axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_3 -
-            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t
-        )
-        upu_dalpha_c_in_base_x_2 = (
-        axis_x_upu_axes2_x*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_x*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_x*upu_dalpha_G_t_2
-        )
-        upu_dalpha_c_in_base_y_2 = (
-        axis_x_upu_axes2_y*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_y*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_y*upu_dalpha_G_t_2
-        )
-        upu_dalpha_c_in_base_z_2 = (
-        axis_x_upu_axes2_z*upu_dalpha_phi_3_t_2 - axis_y_upu_axes2_in_base_z*upu_dalpha_G_t_4 -
-            axis_z_upu_axes2_in_base_z*upu_dalpha_G_t_2
-        )
-        # (M_ta) coupling block of M
-        upu_M_ta_t = upu_Q_t_13*upu_q_in_base_z
-        upu_M_ta_t_2 = upu_Q_t_14*upu_q_in_base_y
-        upu_M_ta_t_3 = upu_Q_t_17*upu_q_in_base_x
-        upu_M_ta_t_4 = (
-        upu_M_ta_t + axis_x_upu_axes2_x*upu_dalpha_c_in_base_x +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_x_2 - upu_M_ta_t_2
-        )
-        upu_M_ta_t_5 = (
-        upu_Q_t_12*upu_q_in_base_z - axis_x_upu_axes2_y*upu_dalpha_c_in_base_x -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_x_2 - upu_Q_t_14*upu_q_in_base_x
-        )
-        upu_M_ta_t_6 = (
-        axis_x_upu_axes2_z*upu_dalpha_c_in_base_x +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_x_2 + upu_Q_t_12*upu_q_in_base_y -
-            upu_Q_t_13*upu_q_in_base_x
-        )
-        upu_M_ta_t_7 = (
-        axis_x_upu_axes2_x*upu_dalpha_c_in_base_y +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_y_2 + upu_Q_t_16*upu_q_in_base_z -
-            upu_Q_t_17*upu_q_in_base_y
-        )
-        upu_M_ta_t_8 = (
-        upu_M_ta_t - upu_M_ta_t_3 - axis_x_upu_axes2_y*upu_dalpha_c_in_base_y -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_y_2
-        )
-        upu_M_ta_t_9 = (
-        axis_x_upu_axes2_z*upu_dalpha_c_in_base_y +
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_y_2 + upu_Q_t_13*upu_q_in_base_y -
-            upu_Q_t_16*upu_q_in_base_x
-        )
-        upu_M_ta_t_10 = (
-        axis_x_upu_axes2_x*upu_dalpha_c_in_base_z +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_c_in_base_z_2 + upu_Q_t_17*upu_q_in_base_z -
-            upu_Q_t_19*upu_q_in_base_y
-        )
-        upu_M_ta_t_11 = (
-        upu_Q_t_14*upu_q_in_base_z - axis_x_upu_axes2_y*upu_dalpha_c_in_base_z -
-            axis_y_upu_axes2_in_base_y*upu_dalpha_c_in_base_z_2 - upu_Q_t_19*upu_q_in_base_x
-        )
-        upu_M_ta_t_12 = (
-        upu_M_ta_t_3 - upu_M_ta_t_2 - axis_x_upu_axes2_z*upu_dalpha_c_in_base_z -
-            axis_y_upu_axes2_in_base_z*upu_dalpha_c_in_base_z_2
+        # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_d_G_in_axes2_yz = (
+        inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
+            upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_root_2)
         )
         # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        upu_dalpha_G_m1_t = upu_dalpha_Gamma_1_x*upu_w_1_t_4
-        upu_dalpha_G_m1_t_2 = upu_dalpha_Gamma_1_y*upu_w_1_t_4
-        # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        upu_d_G_m1_t = upu_c_2*upu_h_3_y*upu_w_1_t_4
-        upu_d_G_m1_t_2 = (
-        upu_w_1_t_4*(upu_s_2*(inv_upu_root_2*upu_J_group_2_xz - upu_h_3_y) -
-            inv_upu_root_2*upu_J_group_2_yz*upu_c_2)
+        upu_dalpha_G_m1_in_axes2_x = upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1
+        upu_dalpha_G_m1_in_axes2_y = upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1
+        upu_dalpha_G_m1_y = (
+        axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y
         )
-        upu_d_G_m1_t_3 = upu_d_Gamma_1_z*upu_w_1_t_4
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_in_base_x = (
-        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y
-        )
-        upu_n_m1_in_base_y = (
-        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x - axis_x_upu_axes2_y*upu_end_p1_r3_y
-        )
-        upu_n_m1_in_base_z = (
-        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x - axis_x_upu_axes2_z*upu_end_p1_r3_y
-        )
-        # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        upu_dalpha_G_m1_in_base_y = (
-        axis_x_upu_axes2_y*upu_dalpha_G_m1_t + axis_y_upu_axes2_in_base_y*upu_dalpha_G_m1_t_2
-        )
-        upu_dalpha_G_m1_in_base_z = (
-        axis_x_upu_axes2_z*upu_dalpha_G_m1_t + axis_y_upu_axes2_in_base_z*upu_dalpha_G_m1_t_2
+        upu_dalpha_G_m1_z = (
+        axis_x_upu_axes2_z*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y
         )
         # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
-        upu_d_G_m1_in_base_x = (
-        axis_y_upu_axes2_in_base_x*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_x*upu_d_G_m1_t_3 -
-            axis_x_upu_axes2_x*upu_d_G_m1_t
+        upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1
+        upu_d_G_m1_in_axes2_y = (
+        upu_m1_w_1*(upu_s_2*(inv_upu_root_2*upu_J_group_2_in_axes2_xz - upu_h_3_in_spec2_y) +
+            inv_upu_root_2*upu_J_group_2_in_axes2_yz*upu_c_2)
         )
-        upu_d_G_m1_in_base_y = (
-        axis_y_upu_axes2_in_base_y*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_y*upu_d_G_m1_t_3 -
-            axis_x_upu_axes2_y*upu_d_G_m1_t
+        upu_d_G_m1_in_axes2_z = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1
+        upu_d_G_m1_x = (
+        axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_x*upu_d_G_m1_in_axes2_y +
+            axis_z_upu_axes2_x*upu_d_G_m1_in_axes2_z
         )
-        upu_d_G_m1_in_base_z = (
-        axis_y_upu_axes2_in_base_z*upu_d_G_m1_t_2 + axis_z_upu_axes2_in_base_z*upu_d_G_m1_t_3 -
-            axis_x_upu_axes2_z*upu_d_G_m1_t
+        upu_d_G_m1_y = (
+        axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_y*upu_d_G_m1_in_axes2_y +
+            axis_z_upu_axes2_y*upu_d_G_m1_in_axes2_z
+        )
+        upu_d_G_m1_z = (
+        axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_z*upu_d_G_m1_in_axes2_y +
+            axis_z_upu_axes2_z*upu_d_G_m1_in_axes2_z
         )
         # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_d_G_m_xx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_x
-        upu_d_G_m_xy = upu_d_G_m1_in_base_y*upu_n_m1_in_base_x
-        upu_d_G_m_xz = upu_d_G_m1_in_base_z*upu_n_m1_in_base_x
-        upu_d_G_m_yx = upu_d_G_m1_in_base_x*upu_n_m1_in_base_y
+        upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
+        upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x
+        upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x
+        upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y
+        # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        upu_dalpha_c_in_axes2_xy = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
+        # (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y
+        # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
+        upu_Q_t = (
+        inv_upu_root_2*(upu_h_3_in_spec2_x + inv_upu_root_2*upu_J_group_2_in_axes2_zz +
+            upu_root_2*(upu_link3_mass + inv_upu_root_2*upu_h_3_in_spec2_x)) - upu_link3_mass
+        )
+        upu_Q_t_2 = 0.5*upu_Q_t
+        upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*upu_w_1_in_axes2_z - upu_link3_mass
+        upu_Q_t_4 = 0.5*upu_Q_t_3
+        upu_Q_t_5 = (
+        axis_x_upu_axes2_x*upu_d_phi_3_in_axes2_xy + axis_y_upu_axes2_x*upu_Q_t_2 +
+            axis_z_upu_axes2_x*upu_d_G_in_axes2_yz
+        )
+        upu_Q_t_6 = (
+        axis_x_upu_axes2_y*upu_d_phi_3_in_axes2_xy + axis_y_upu_axes2_y*upu_Q_t_2 +
+            axis_z_upu_axes2_y*upu_d_G_in_axes2_yz
+        )
+        upu_Q_t_7 = (
+        axis_x_upu_axes2_z*upu_d_phi_3_in_axes2_xy + axis_y_upu_axes2_z*upu_Q_t_2 +
+            axis_z_upu_axes2_z*upu_d_G_in_axes2_yz
+        )
+        upu_Q_t_8 = axis_z_upu_axes2_x*upu_Q_t_4 - axis_x_upu_axes2_x*upu_d_c_in_axes2_xz
+        upu_Q_t_9 = axis_z_upu_axes2_y*upu_Q_t_4 - axis_x_upu_axes2_y*upu_d_c_in_axes2_xz
+        upu_Q_t_10 = axis_z_upu_axes2_z*upu_Q_t_4 - axis_x_upu_axes2_z*upu_d_c_in_axes2_xz
+        upu_Q_t_11 = axis_y_upu_axes2_x*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_8
+        upu_Q_xx = 2.0*upu_Q_t_11 + upu_link3_mass
+        upu_Q_xy = (
+        axis_y_upu_axes2_x*upu_Q_t_6 + axis_y_upu_axes2_y*upu_Q_t_5 + axis_z_upu_axes2_x*upu_Q_t_9
+            + axis_z_upu_axes2_y*upu_Q_t_8
+        )
+        upu_Q_xz = (
+        axis_y_upu_axes2_x*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_5 +
+            axis_z_upu_axes2_x*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_8
+        )
+        upu_Q_t_12 = axis_y_upu_axes2_y*upu_Q_t_6 + axis_z_upu_axes2_y*upu_Q_t_9
+        upu_Q_yy = 2.0*upu_Q_t_12 + upu_link3_mass
+        upu_Q_yz = (
+        axis_y_upu_axes2_y*upu_Q_t_7 + axis_y_upu_axes2_z*upu_Q_t_6 +
+            axis_z_upu_axes2_y*upu_Q_t_10 + axis_z_upu_axes2_z*upu_Q_t_9
+        )
+        upu_Q_t_13 = axis_y_upu_axes2_z*upu_Q_t_7 + axis_z_upu_axes2_z*upu_Q_t_10
+        upu_Q_zz = 2.0*upu_Q_t_13 + upu_link3_mass
+        # (M_ta) coupling block of M
+        upu_M_ta_t = (
+        -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx
+        )
+        upu_M_ta_t_2 = (
+        -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx
+        )
+        upu_M_ta_t_3 = (
+        -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xx -
+            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx -
+            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx
+        )
+        upu_M_ta_t_4 = (
+        axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy
+            - axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy
+        )
+        upu_M_ta_t_5 = (
+        axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy
+            - axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy
+        )
+        upu_M_ta_t_6 = (
+        axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy
+            - axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy
+        )
+        upu_M_ta_t_7 = upu_Q_xy*upu_q_z
+        upu_M_ta_t_8 = upu_Q_xz*upu_q_y
+        upu_M_ta_t_9 = upu_Q_yz*upu_q_x
+        upu_M_ta_t_10 = (
+        upu_M_ta_t_8 - upu_M_ta_t_7 - axis_x_upu_axes2_x*upu_M_ta_t -
+            axis_y_upu_axes2_x*upu_M_ta_t_4
+        )
+        upu_M_ta_t_11 = (
+        upu_Q_xx*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t - axis_y_upu_axes2_y*upu_M_ta_t_4 -
+            upu_Q_xz*upu_q_x
+        )
+        upu_M_ta_t_12 = (
+        upu_Q_xy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t - axis_y_upu_axes2_z*upu_M_ta_t_4 -
+            upu_Q_xx*upu_q_y
+        )
+        upu_M_ta_t_13 = (
+        upu_Q_yz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_2 - axis_y_upu_axes2_x*upu_M_ta_t_5 -
+            upu_Q_yy*upu_q_z
+        )
+        upu_M_ta_t_14 = (
+        upu_M_ta_t_7 - upu_M_ta_t_9 - axis_x_upu_axes2_y*upu_M_ta_t_2 -
+            axis_y_upu_axes2_y*upu_M_ta_t_5
+        )
+        upu_M_ta_t_15 = (
+        upu_Q_yy*upu_q_x - axis_x_upu_axes2_z*upu_M_ta_t_2 - axis_y_upu_axes2_z*upu_M_ta_t_5 -
+            upu_Q_xy*upu_q_y
+        )
+        upu_M_ta_t_16 = (
+        upu_Q_zz*upu_q_y - axis_x_upu_axes2_x*upu_M_ta_t_3 - axis_y_upu_axes2_x*upu_M_ta_t_6 -
+            upu_Q_yz*upu_q_z
+        )
+        upu_M_ta_t_17 = (
+        upu_Q_xz*upu_q_z - axis_x_upu_axes2_y*upu_M_ta_t_3 - axis_y_upu_axes2_y*upu_M_ta_t_6 -
+            upu_Q_zz*upu_q_x
+        )
+        upu_M_ta_t_18 = (
+        upu_M_ta_t_9 - upu_M_ta_t_8 - axis_x_upu_axes2_z*upu_M_ta_t_3 -
+            axis_y_upu_axes2_z*upu_M_ta_t_6
+        )
         # (M_aa) rotational block of M
         upu_M_aa_t = (
-        upu_M_ta_t_7*upu_q_in_base_z + upu_d_G_m_xz*upu_q_in_base_y +
-            upu_n_m1_in_base_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_t +
-            axis_y_upu_axes2_in_base_x*upu_dalpha_G_m1_t_2) - upu_M_ta_t_10*upu_q_in_base_y -
-            upu_d_G_m_xy*upu_q_in_base_z
+        upu_M_ta_t_16*upu_q_y + upu_d_G_m_xz*upu_q_y +
+            upu_n_m1_x*(axis_x_upu_axes2_x*upu_dalpha_G_m1_in_axes2_x +
+            axis_y_upu_axes2_x*upu_dalpha_G_m1_in_axes2_y) - upu_M_ta_t_13*upu_q_z -
+            upu_d_G_m_xy*upu_q_z
         )
         upu_M_aa_t_2 = (
-        upu_M_ta_t_11*upu_q_in_base_y + upu_d_G_m_xx*upu_q_in_base_z +
-            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_x - upu_M_ta_t_8*upu_q_in_base_z -
-            upu_d_G_m_xz*upu_q_in_base_x
+        upu_M_ta_t_17*upu_q_y + upu_d_G_m_xx*upu_q_z + upu_dalpha_G_m1_y*upu_n_m1_x -
+            upu_M_ta_t_14*upu_q_z - upu_d_G_m_xz*upu_q_x
         )
         upu_M_aa_t_3 = (
-        upu_M_ta_t_12*upu_q_in_base_y + upu_M_ta_t_9*upu_q_in_base_z +
-            upu_d_G_m_xy*upu_q_in_base_x + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_x -
-            upu_d_G_m_xx*upu_q_in_base_y
+        upu_M_ta_t_18*upu_q_y + upu_d_G_m_xy*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_x -
+            upu_M_ta_t_15*upu_q_z - upu_d_G_m_xx*upu_q_y
         )
         upu_M_aa_t_4 = (
-        upu_M_ta_t_5*upu_q_in_base_z + upu_d_G_m_yx*upu_q_in_base_z +
-            upu_dalpha_G_m1_in_base_y*upu_n_m1_in_base_y - upu_M_ta_t_11*upu_q_in_base_x -
-            upu_d_G_m1_in_base_z*upu_n_m1_in_base_y*upu_q_in_base_x
+        upu_M_ta_t_11*upu_q_z + upu_d_G_m_yx*upu_q_z + upu_dalpha_G_m1_y*upu_n_m1_y -
+            upu_M_ta_t_17*upu_q_x - upu_d_G_m1_z*upu_n_m1_y*upu_q_x
         )
         upu_M_aa_t_5 = (
-        upu_M_ta_t_12*upu_q_in_base_x + upu_M_ta_t_6*upu_q_in_base_z +
-            upu_d_G_m_yx*upu_q_in_base_y - upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_y -
-            upu_d_G_m1_in_base_y*upu_n_m1_in_base_y*upu_q_in_base_x
+        upu_M_ta_t_12*upu_q_z + upu_dalpha_G_m1_z*upu_n_m1_y + upu_d_G_m1_y*upu_n_m1_y*upu_q_x -
+            upu_M_ta_t_18*upu_q_x - upu_d_G_m_yx*upu_q_y
         )
         upu_M_aa_t_6 = (
-        upu_M_ta_t_6*upu_q_in_base_y + upu_dalpha_G_m1_in_base_z*upu_n_m1_in_base_z +
-            upu_d_G_m1_in_base_y*upu_n_m1_in_base_z*upu_q_in_base_x - upu_M_ta_t_9*upu_q_in_base_x
-            - upu_d_G_m1_in_base_x*upu_n_m1_in_base_z*upu_q_in_base_y
+        upu_M_ta_t_15*upu_q_x + upu_dalpha_G_m1_z*upu_n_m1_z + upu_d_G_m1_y*upu_n_m1_z*upu_q_x -
+            upu_M_ta_t_12*upu_q_y - upu_d_G_m1_x*upu_n_m1_z*upu_q_y
         )
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        upu_Q_t_12, upu_Q_t_13, upu_Q_t_14, upu_Q_t_16, upu_Q_t_17, upu_Q_t_19, upu_M_ta_t_4,
-            upu_M_ta_t_5, upu_M_ta_t_6, upu_M_ta_t_7, upu_M_ta_t_8, upu_M_ta_t_9,
-            upu_M_ta_t_10, upu_M_ta_t_11, upu_M_ta_t_12, upu_M_aa_t, upu_M_aa_t_2,
+        upu_Q_xx, upu_Q_xy, upu_Q_xz, upu_Q_yy, upu_Q_yz, upu_Q_zz, upu_M_ta_t_10,
+            upu_M_ta_t_11, upu_M_ta_t_12, upu_M_ta_t_13, upu_M_ta_t_14, upu_M_ta_t_15,
+            upu_M_ta_t_16, upu_M_ta_t_17, upu_M_ta_t_18, upu_M_aa_t, upu_M_aa_t_2,
             upu_M_aa_t_3, upu_M_aa_t_4, upu_M_aa_t_5, upu_M_aa_t_6,
         ))
     (
-    total_upu_xx, total_upu_xy, total_upu_xz, total_upu_yy, total_upu_yz, total_upu_zz,
-        total_upu_xx_2, total_upu_xy_2, total_upu_xz_2, total_upu_yx, total_upu_yy_2,
-        total_upu_yz_2, total_upu_zx, total_upu_zy, total_upu_zz_2, total_upu_xx_3,
-        total_upu_xy_3, total_upu_xz_3, total_upu_yy_3, total_upu_yz_3, total_upu_zz_3,
+    M_tt_upu_xx, M_tt_xy, M_tt_xz, M_tt_upu_yy, M_tt_yz, M_tt_upu_zz, M_ta_xx, M_ta_upu_xy,
+        M_ta_upu_xz, M_ta_upu_yx, M_ta_yy, M_ta_upu_yz, M_ta_upu_zx, M_ta_upu_zy, M_ta_zz,
+        M_aa_upu_xx, M_aa_upu_xy, M_aa_upu_xz, M_aa_upu_yy, M_aa_upu_yz, M_aa_upu_zz,
     ) = sums
     # (M_tt) translational block of M
-    M_tt_xx = platform_mass + total_upu_xx
-    M_tt_yy = platform_mass + total_upu_yy
-    M_tt_zz = platform_mass + total_upu_zz
+    M_tt_xx = M_tt_upu_xx + platform_mass
+    M_tt_yy = M_tt_upu_yy + platform_mass
+    M_tt_zz = M_tt_upu_zz + platform_mass
     # (M_ta) coupling block of M
-    M_ta_xy = h_star_in_base_z + total_upu_xy_2
-    M_ta_xz = -h_star_in_base_y - total_upu_xz_2
-    M_ta_yx = -h_star_in_base_z - total_upu_yx
-    M_ta_yz = h_star_in_base_x - total_upu_yz_2
-    M_ta_zx = h_star_in_base_y - total_upu_zx
-    M_ta_zy = total_upu_zy - h_star_in_base_x
+    M_ta_xy = M_ta_upu_xy + h_star_z
+    M_ta_xz = M_ta_upu_xz - h_star_y
+    M_ta_yx = M_ta_upu_yx - h_star_z
+    M_ta_yz = M_ta_upu_yz + h_star_x
+    M_ta_zx = M_ta_upu_zx + h_star_y
+    M_ta_zy = M_ta_upu_zy - h_star_x
     # (M_aa) rotational block of M
-    M_aa_xx = J_star_t_10 + total_upu_xx_3
-    M_aa_xy = J_star_t_11 + total_upu_xy_3
-    M_aa_xz = J_star_t_12 + total_upu_xz_3
-    M_aa_yy = J_star_t_14 + total_upu_yy_3
-    M_aa_yz = J_star_t_15 - total_upu_yz_3
-    M_aa_zz = J_star_t_17 + total_upu_zz_3
+    M_aa_xx = J_star_xx + M_aa_upu_xx
+    M_aa_xy = J_star_xy + M_aa_upu_xy
+    M_aa_xz = J_star_xz + M_aa_upu_xz
+    M_aa_yy = J_star_yy + M_aa_upu_yy
+    M_aa_yz = J_star_yz + M_aa_upu_yz
+    M_aa_zz = J_star_zz + M_aa_upu_zz
+    # (M_tt) translational block of M
     out_M[0] = M_tt_xx
-    out_M[1] = total_upu_xy
-    out_M[6] = total_upu_xy
-    out_M[2] = total_upu_xz
-    out_M[12] = total_upu_xz
+    out_M[1] = M_tt_xy
+    out_M[6] = M_tt_xy
+    out_M[2] = M_tt_xz
+    out_M[12] = M_tt_xz
     out_M[7] = M_tt_yy
-    out_M[8] = total_upu_yz
-    out_M[13] = total_upu_yz
+    out_M[8] = M_tt_yz
+    out_M[13] = M_tt_yz
     out_M[14] = M_tt_zz
-    out_M[3] = -total_upu_xx_2
-    out_M[18] = -total_upu_xx_2
+    # (M_ta) coupling block of M
+    out_M[3] = M_ta_xx
+    out_M[18] = M_ta_xx
     out_M[4] = M_ta_xy
     out_M[24] = M_ta_xy
     out_M[5] = M_ta_xz
     out_M[30] = M_ta_xz
     out_M[9] = M_ta_yx
     out_M[19] = M_ta_yx
-    out_M[10] = total_upu_yy_2
-    out_M[25] = total_upu_yy_2
+    out_M[10] = M_ta_yy
+    out_M[25] = M_ta_yy
     out_M[11] = M_ta_yz
     out_M[31] = M_ta_yz
     out_M[15] = M_ta_zx
     out_M[20] = M_ta_zx
     out_M[16] = M_ta_zy
     out_M[26] = M_ta_zy
-    out_M[17] = total_upu_zz_2
-    out_M[32] = total_upu_zz_2
+    out_M[17] = M_ta_zz
+    out_M[32] = M_ta_zz
+    # (M_aa) rotational block of M
     out_M[21] = M_aa_xx
     out_M[22] = M_aa_xy
     out_M[27] = M_aa_xy
@@ -2637,8 +2704,9 @@ def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
-        gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x,
+        gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -2691,58 +2759,77 @@ def _run_Z(m, X, V):
     ok = ok & (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     out_Z = m.zeros("Z")
     # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (Z_p) centripetal force and weight of the platform
-    Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
-    Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
-    Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y
+    Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z
+    Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x
+    Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y
     Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z
     Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x
     Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y
     # (Z_q) gyroscopic moment and moment of the weight of the platform
-    g_r0_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
-    g_r0_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
-    g_r0_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
-    Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y*h_star_z - Z_q_t_2*omega_r0_z - g_r0_z*h_star_y
-    Z_q_y = Z_q_t*omega_r0_z + g_r0_z*h_star_x - Z_q_t_3*omega_r0_x - g_r0_x*h_star_z
-    Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x*h_star_y - Z_q_t*omega_r0_y - g_r0_y*h_star_x
-    Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
-    Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
-    Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
+    g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z
+    g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z
+    g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    Z_q_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
+    )
+    Z_q_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
+    )
+    Z_q_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
+    )
+    Z_q_in_platform_x = (
+    Z_q_t_3*omega_in_platform_y + g_in_platform_y*h_star_in_platform_z -
+        Z_q_t_2*omega_in_platform_z - g_in_platform_z*h_star_in_platform_y
+    )
+    Z_q_in_platform_y = (
+    Z_q_t*omega_in_platform_z + g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x
+        - g_in_platform_x*h_star_in_platform_z
+    )
+    Z_q_in_platform_z = (
+    Z_q_t_2*omega_in_platform_x + g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y
+        - g_in_platform_y*h_star_in_platform_x
+    )
+    Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y + R_xz*Z_q_in_platform_z
+    Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y + R_yz*Z_q_in_platform_z
+    Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y + R_zz*Z_q_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
-            upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y, upu_g_r0_z,
-            upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z, upu_link3_mass,
-            upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-            upu_platform_point_z,
+        upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
+            upu_Sigma_2_in_axes2_xx, upu_Sigma_2_in_axes2_yy, upu_Sigma_2_in_axes2_zz,
+            upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx, upu_base_frame_xy,
+            upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+            upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+            upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_2_in_spec2_x,
+            upu_h_2_in_spec2_y, upu_h_2_in_spec2_z, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y,
+            upu_h_3_in_spec2_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
+            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -2755,287 +2842,301 @@ def _run_Z(m, X, V):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_S_dot_t = upu_s_1*upu_s_2
+        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y
+        upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z
+        upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t_3
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_4
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_5
+        upu_S_dot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
-        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
-        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
-        upu_S_dot_x = t_dot_x + upu_S_dot_t
-        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
-        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-eta_1) rate at which the joints turn along moment direction 1
         upu_eta_1 = (
-        omega_x*(axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y)
-            + omega_y*(axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y) +
-            omega_z*(axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y)
+        omega_x*(axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y) +
+            omega_y*(axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y) +
+            omega_z*(axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y)
         )
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_tip_x = (
-        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
-            axis_x_upu_axes2_z*upu_S_dot_z
+        # (upu-qd_1) rate of joint 1
+        upu_qd_1 = (
+        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z + upu_eta_1*upu_n_c_t)
         )
-        # (upu-qd_3) rate of joint 3
-        upu_qd_3_t = (
-        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
-        )
-        upu_qd_3_t_2 = (
-        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z +
-            upu_eta_1*upu_n_c_z)
+        # (upu-qd_2) rate of joint 2
+        upu_qd_2 = (
+        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+            axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_t = upu_qd_3_t_2*upu_s_2
-        upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2
-        # (upu-u_1) centripetal acceleration of the connection point
-        upu_u_1_x = omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
-        upu_u_1_y = omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
-        upu_u_1_z = omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
-        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t
-        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
+        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t = upu_omega_1_t*upu_omega_1_t
-        upu_W_2_t_2 = upu_omega_1_t_2*upu_omega_1_t_2
-        upu_W_2_t_3 = upu_qd_3_t*upu_qd_3_t
-        upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2
+        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
+        # (upu-u_1) centripetal acceleration of the connection point
+        upu_u_1_x = omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
+        upu_u_1_y = omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
+        upu_u_1_z = omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
         # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_t = 2.0*upu_S_dot_tip_x
-        upu_bias_t_2 = upu_bias_t*upu_qd_3_t
-        upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2
-        upu_bias_z = upu_bias_t_3 + 2.0*upu_root_2*upu_zeta_2_y
+        upu_bias_t = 2.0*upu_S_dot_in_axes2_x
+        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2
         # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        upu_rel_o_z = (
-        axis_z_upu_axes2_in_base_x*upu_u_1_x + axis_z_upu_axes2_in_base_y*upu_u_1_y +
-            axis_z_upu_axes2_in_base_z*upu_u_1_z - upu_bias_z
+        upu_rel_o_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_u_1_x + axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z
+            - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_omega_tip_x = (
+        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        upu_omega_tip_y = (
-        axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
-            axis_y_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_omega_tip_z = (
-        axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
-            axis_z_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_z = (
+        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_x = (
-        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z
+        upu_nd_m1_in_axes2_x = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_y = (
-        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
-            upu_end_p1_r3_y*upu_omega_tip_z
+        upu_nd_m1_in_axes2_y = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t = (
+        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
+        )
         upu_nu_1_t_2 = (
-        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
-            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
+            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
+            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
-        # (upu-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
-        upu_qdd_3_o_t = (
-        axis_y_upu_axes2_in_base_x*upu_u_1_x + axis_y_upu_axes2_in_base_y*upu_u_1_y +
-            axis_y_upu_axes2_in_base_z*upu_u_1_z - upu_bias_t_2
-        )
-        upu_qdd_3_o_t_2 = inv_upu_root_2*upu_qdd_3_o_t
-        upu_qdd_3_o_t_3 = inv_upu_w_1_t_25*(upu_rel_o_z + upu_n_c_z*upu_nu_1)
+        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
+        # (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
+        upu_qdd_1_o = upu_w_1_in_axes2_z*(upu_rel_o_in_axes2_z + upu_n_c_t*upu_nu_1)
         # (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        upu_alpha_1_o_t = upu_qdd_3_o_t_3*upu_s_2
-        upu_alpha_1_o_t_2 = upu_c_2*upu_qdd_3_o_t_3
+        upu_alpha_1_o_in_axes2_x = upu_qdd_1_o*upu_s_2
+        upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o
         # (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        upu_alpha_2_o_x = upu_alpha_1_o_t - upu_zeta_2_x
-        upu_alpha_2_o_y = -upu_alpha_1_o_t_2 - upu_zeta_2_y
+        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x
+        upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
-        upu_B_2_o_xy = -2.0*upu_W_2_xy - upu_qdd_3_o_t_2
-        upu_B_2_o_zx = upu_zeta_2_y - upu_alpha_2_o_y
-        upu_B_2_o_zy = upu_alpha_2_o_x - upu_zeta_2_x
+        upu_B_2_o_t = upu_bias_t*upu_qd_2
+        upu_B_2_o_t_2 = (
+        axis_y_upu_axes2_x*upu_u_1_x + axis_y_upu_axes2_y*upu_u_1_y + axis_y_upu_axes2_z*upu_u_1_z
+            - upu_B_2_o_t
+        )
+        upu_B_2_o_in_axes2_yx = inv_upu_root_2*upu_B_2_o_t_2
+        upu_B_2_o_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx
+        upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y
+        upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x
         # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x
-        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
-        upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y
-        upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2
-        upu_acc_3_o_x = (
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t
+        upu_acc_3_o_t = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_o_t*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_o_t*upu_s_2 + upu_acc_3_t_3*upu_c_2
+        upu_acc_3_o_in_axes2_x = (
         axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
-            - upu_g_r3_x
+            - upu_g_in_axes2_x
         )
-        upu_acc_3_o_y = upu_bias_t_2 + upu_qdd_3_o_t - upu_g_r3_y
-        upu_acc_3_o_z = upu_bias_t_3 + upu_B_2_o_zx*upu_root_2 - upu_g_r1_x
+        upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y
+        upu_acc_3_o_in_axes2_z = (
+        upu_B_2_o_in_axes2_zx*upu_root_2 - upu_bias_t_2 - upu_g_in_axes2_z
+        )
         # (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
-        upu_f_3_o_x = (
-        upu_acc_3_o_x*upu_link3_mass - upu_B_2_o_xy*upu_h_3_z - upu_alpha_1_o_t_2*upu_h_3_y -
-            upu_h_3_x*(upu_W_2_t_2 + upu_W_2_t_3)
+        upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
+        upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_f_3_o_t_3 = upu_qd_2*upu_qd_2
+        upu_f_3_o_in_axes2_x = (
+        upu_acc_3_o_in_axes2_x*upu_link3_mass + upu_alpha_1_o_in_axes2_y*upu_h_3_in_spec2_y -
+            upu_B_2_o_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_f_3_o_t_2 +
+            upu_f_3_o_t_3)
         )
-        upu_f_3_o_y = (
-        upu_acc_3_o_y*upu_link3_mass + upu_h_3_x*upu_qdd_3_o_t_2 + upu_h_3_z*(upu_W_2_t +
-            upu_W_2_t_3) - upu_alpha_1_o_t*upu_h_3_y
+        upu_f_3_o_in_axes2_y = (
+        upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_y*upu_link3_mass +
+            upu_h_3_in_spec2_z*(upu_f_3_o_t + upu_f_3_o_t_3) -
+            upu_alpha_1_o_in_axes2_x*upu_h_3_in_spec2_y
         )
-        upu_f_3_o_z = (
-        upu_B_2_o_zx*upu_h_3_x + upu_acc_3_o_z*upu_link3_mass - upu_B_2_o_zy*upu_h_3_z -
-            upu_h_3_y*(upu_W_2_t + upu_W_2_t_2)
+        upu_f_3_o_in_axes2_z = (
+        upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_z*upu_link3_mass -
+            upu_B_2_o_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_o_t +
+            upu_f_3_o_t_2)
         )
         # (upu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-        upu_mu_2_o_x = (
-        upu_B_2_o_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_3_o_t_2 +
-            upu_J_group_2_yz*(upu_W_2_t_2 - upu_W_2_t_3) + upu_Sigma_2_zz*upu_alpha_1_o_t +
-            upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_o_zx*upu_J_group_2_xy -
-            upu_acc_3_o_y*upu_h_3_y - upu_acc_3_o_z*upu_h_3_z
+        upu_mu_2_o_in_axes2_x = (
+        upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+            upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_f_3_o_t_3) +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y
+            + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
+            upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
+            upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
         )
-        upu_mu_2_o_y = (
-        upu_B_2_o_zy*upu_J_group_2_xy + upu_acc_3_o_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x -
-            upu_B_2_o_xy*upu_J_group_2_yz - upu_B_2_o_zx*upu_Sigma_2_xx -
-            upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_3) - upu_Sigma_2_zz*upu_alpha_1_o_t_2 -
-            upu_acc_3_o_z*upu_h_3_x - upu_g_r3_x*upu_h_2_y
+        upu_mu_2_o_in_axes2_y = (
+        upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_y +
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_B_2_o_in_axes2_xy*upu_J_group_2_in_axes2_yz -
+            upu_B_2_o_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_J_group_2_in_axes2_xz*(upu_f_3_o_t
+            - upu_f_3_o_t_3) - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_x -
+            upu_g_in_axes2_x*upu_h_2_in_spec2_y
         )
-        upu_mu_2_o_z = (
-        upu_J_group_2_xy*(upu_W_2_t - upu_W_2_t_2) + upu_J_group_2_xz*upu_alpha_1_o_t +
-            upu_Sigma_2_xx*upu_qdd_3_o_t_2 + upu_acc_3_o_x*upu_h_3_z + upu_acc_3_o_y*upu_h_3_x -
-            upu_B_2_o_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_o_t_2 -
-            upu_g_r3_x*upu_h_2_z - upu_g_r3_y*upu_h_2_x
+        upu_mu_2_o_in_axes2_z = (
+        upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_o_t -
+            upu_f_3_o_t_2) + upu_J_group_2_in_axes2_xz*upu_alpha_1_o_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
+            upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
+            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z
+            - upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        upu_N_2_o_y = upu_mu_2_o_y - upu_f_3_o_z*upu_root_2
-        upu_N_2_o_r0_y = upu_mu_2_o_x*upu_s_2 - upu_N_2_o_y*upu_c_2
+        upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_root_2
+        upu_N_2_o_in_axes1_z = upu_N_2_o_in_axes2_y*upu_c_2 + upu_mu_2_o_in_axes2_x*upu_s_2
         # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_G_o_t = upu_f_3_o_y + inv_upu_root_2*upu_mu_2_o_z
-        upu_G_o_t_2 = inv_upu_w_1_t_25*upu_N_2_o_r0_y
-        upu_G_o_t_3 = inv_upu_w_1_t_25*upu_N_2_o_r0_y*upu_n_c_z
-        # (upu-U) velocity and gravity terms of the leg force
-        upu_U_in_base_x = (
-        axis_x_upu_axes2_x*upu_f_3_o_x + axis_y_upu_axes2_in_base_x*upu_G_o_t +
-            axis_z_upu_axes2_in_base_x*upu_G_o_t_2
-        )
-        upu_U_in_base_y = (
-        axis_x_upu_axes2_y*upu_f_3_o_x + axis_y_upu_axes2_in_base_y*upu_G_o_t +
-            axis_z_upu_axes2_in_base_y*upu_G_o_t_2
-        )
-        upu_U_in_base_z = (
-        axis_x_upu_axes2_z*upu_f_3_o_x + axis_y_upu_axes2_in_base_z*upu_G_o_t +
-            axis_z_upu_axes2_in_base_z*upu_G_o_t_2
-        )
+        upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_root_2*upu_mu_2_o_in_axes2_z
+        upu_G_o_in_axes2_z = upu_N_2_o_in_axes1_z*upu_w_1_in_axes2_z
+        # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_G_m1_o = upu_N_2_o_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
         # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_G_m_o_x = upu_G_o_t_3*upu_end_p1_r3_y
-        upu_G_m_o_y = upu_G_o_t_3*upu_end_p1_r3_x
+        upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
+        # (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
+        upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
+        # (upu-U) velocity and gravity terms of the leg force
+        upu_U_x = (
+        axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_x*upu_G_o_in_axes2_y +
+            axis_z_upu_axes2_x*upu_G_o_in_axes2_z
+        )
+        upu_U_y = (
+        axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_y*upu_G_o_in_axes2_y +
+            axis_z_upu_axes2_y*upu_G_o_in_axes2_z
+        )
+        upu_U_z = (
+        axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_z*upu_G_o_in_axes2_y +
+            axis_z_upu_axes2_z*upu_G_o_in_axes2_z
+        )
         # (Z_a) rotational part of Z
         upu_Z_a_t = (
-        axis_y_upu_axes2_in_base_x*upu_G_m_o_y + upu_U_in_base_z*upu_q_in_base_y -
-            axis_x_upu_axes2_x*upu_G_m_o_x - upu_U_in_base_y*upu_q_in_base_z
+        axis_y_upu_axes2_x*upu_G_m_o_in_axes2_y + upu_U_z*upu_q_y -
+            axis_x_upu_axes2_x*upu_c_m_o_in_axes2_x - upu_U_y*upu_q_z
         )
         upu_Z_a_t_2 = (
-        axis_y_upu_axes2_in_base_y*upu_G_m_o_y + upu_U_in_base_x*upu_q_in_base_z -
-            axis_x_upu_axes2_y*upu_G_m_o_x - upu_U_in_base_z*upu_q_in_base_x
+        axis_y_upu_axes2_y*upu_G_m_o_in_axes2_y + upu_U_x*upu_q_z -
+            axis_x_upu_axes2_y*upu_c_m_o_in_axes2_x - upu_U_z*upu_q_x
         )
         upu_Z_a_t_3 = (
-        axis_y_upu_axes2_in_base_z*upu_G_m_o_y + upu_U_in_base_y*upu_q_in_base_x -
-            axis_x_upu_axes2_z*upu_G_m_o_x - upu_U_in_base_x*upu_q_in_base_y
+        axis_y_upu_axes2_z*upu_G_m_o_in_axes2_y + upu_U_y*upu_q_x -
+            axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*upu_q_y
         )
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        upu_U_in_base_x, upu_U_in_base_y, upu_U_in_base_z, upu_Z_a_t, upu_Z_a_t_2,
-            upu_Z_a_t_3,
+        upu_U_x, upu_U_y, upu_U_z, upu_Z_a_t, upu_Z_a_t_2, upu_Z_a_t_3,
         ))
-    total_upu_x, total_upu_y, total_upu_z, total_upu_x_2, total_upu_y_2, total_upu_z_2 = sums
+    Z_t_upu_x, Z_t_upu_y, Z_t_upu_z, Z_a_upu_x, Z_a_upu_y, Z_a_upu_z = sums
     # (Z_t) translational part of Z
-    Z_t_x = Z_p_x + total_upu_x
-    Z_t_y = Z_p_y + total_upu_y
-    Z_t_z = Z_p_z + total_upu_z
+    Z_t_x = Z_p_x + Z_t_upu_x
+    Z_t_y = Z_p_y + Z_t_upu_y
+    Z_t_z = Z_p_z + Z_t_upu_z
     # (Z_a) rotational part of Z
-    Z_a_x = Z_q_in_base_x + total_upu_x_2
-    Z_a_y = Z_q_in_base_y + total_upu_y_2
-    Z_a_z = Z_q_in_base_z + total_upu_z_2
+    Z_a_x = Z_a_upu_x + Z_q_x
+    Z_a_y = Z_a_upu_y + Z_q_y
+    Z_a_z = Z_a_upu_z + Z_q_z
+    # (Z_t) translational part of Z
     out_Z[0] = Z_t_x
     out_Z[1] = Z_t_y
     out_Z[2] = Z_t_z
+    # (Z_a) rotational part of Z
     out_Z[3] = Z_a_x
     out_Z[4] = Z_a_y
     out_Z[5] = Z_a_z
@@ -3091,18 +3192,18 @@ def _run_H(m, X):
             upu_branch_2, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -3115,66 +3216,59 @@ def _run_H(m, X):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        # (upu-w_3) force part of reciprocal wrench 3
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_w_3_t = upu_s_1*upu_s_2
+        upu_w_3_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_base_frame_xx*upu_w_3_t + upu_base_frame_xy*upu_w_3_t_2 + upu_base_frame_xz*upu_c_2
         )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
+        axis_y_upu_axes2_y = (
+        upu_base_frame_yx*upu_w_3_t + upu_base_frame_yy*upu_w_3_t_2 + upu_base_frame_yz*upu_c_2
         )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
+        axis_y_upu_axes2_z = (
+        upu_base_frame_zx*upu_w_3_t + upu_base_frame_zy*upu_w_3_t_2 + upu_base_frame_zz*upu_c_2
         )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
+        upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        upu_w_3_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
         # (upu-H_a_3) moment of the column's unit force about the platform origin
-        upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y - axis_x_upu_axes2_y*upu_q_in_base_z
-        upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z - axis_x_upu_axes2_z*upu_q_in_base_x
-        upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x - axis_x_upu_axes2_x*upu_q_in_base_y
+        upu_H_a_3_x = upu_q_y*upu_w_3_z - upu_q_z*upu_w_3_y
+        upu_H_a_3_y = upu_q_z*upu_w_3_x - upu_q_x*upu_w_3_z
+        upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
             _TOLERANCE * 0.8))
         )
-        out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
-        out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
-        out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
-        out_H[_H_upu[3][leg]] = upu_H_a_3_t
-        out_H[_H_upu[4][leg]] = upu_H_a_3_t_2
-        out_H[_H_upu[5][leg]] = upu_H_a_3_t_3
+        # (upu-w_3) force part of reciprocal wrench 3
+        out_H[_H_upu[0][leg]] = upu_w_3_x
+        out_H[_H_upu[1][leg]] = upu_w_3_y
+        out_H[_H_upu[2][leg]] = upu_w_3_z
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        out_H[_H_upu[3][leg]] = upu_H_a_3_x
+        out_H[_H_upu[4][leg]] = upu_H_a_3_y
+        out_H[_H_upu[5][leg]] = upu_H_a_3_z
     return ok, (out_H,)
 
 
@@ -3229,18 +3323,18 @@ def _run_Hk(m, X):
             upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -3253,98 +3347,102 @@ def _run_Hk(m, X):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_root_2*(-upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2)/upu_volume_c_t
-        # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_c_t = (
+        upu_root_2*(upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2)/upu_volume_c_t
         )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
-        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
-        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
+        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
+        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
+        upu_Hk_a_1_t = upu_s_1*upu_s_2
+        upu_Hk_a_1_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_Hk_a_1_t*upu_base_frame_xx + upu_Hk_a_1_t_2*upu_base_frame_xy +
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_Hk_a_1_t*upu_base_frame_yx + upu_Hk_a_1_t_2*upu_base_frame_yy +
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_Hk_a_1_t*upu_base_frame_zx + upu_Hk_a_1_t_2*upu_base_frame_zy +
+            upu_base_frame_zz*upu_c_2
+        )
         upu_Hk_a_1_x = (
-        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x + upu_n_c_t_2*upu_q_in_base_z -
-            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - upu_n_c_t_3*upu_q_in_base_y
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
+            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_y*axis_z_upu_axes2_z -
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y) - upu_n_c_t_4*upu_q_y
         )
         upu_Hk_a_1_y = (
-        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x + upu_n_c_t_3*upu_q_in_base_x -
-            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - upu_n_c_t*upu_q_in_base_z
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
+            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_z*axis_z_upu_axes2_x -
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z) - upu_n_c_t_2*upu_q_z
         )
         upu_Hk_a_1_z = (
-        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x + upu_n_c_t*upu_q_in_base_y -
-            upu_end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - upu_n_c_t_2*upu_q_in_base_x
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
+            upu_end_p1_in_axes2_y*(axis_y_upu_axes2_x*axis_z_upu_axes2_y -
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x) - upu_n_c_t_3*upu_q_x
         )
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
             _TOLERANCE * 0.8))
         )
-        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t
-        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_2
-        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_3
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
+        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
+        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
         out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
@@ -3415,18 +3513,18 @@ def _run_constraint_bias(m, X, V):
             upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -3439,163 +3537,168 @@ def _run_constraint_bias(m, X, V):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_S_dot_t = upu_s_1*upu_s_2
+        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y
+        upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z
+        upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t_3
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_4
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_5
+        upu_S_dot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
-        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
-        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
-        upu_S_dot_x = t_dot_x + upu_S_dot_t
-        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
-        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
         # (upu-eta_1) rate at which the joints turn along moment direction 1
         upu_eta_1 = (
-        omega_x*(axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y)
-            + omega_y*(axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y) +
-            omega_z*(axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y)
+        omega_x*(axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y) +
+            omega_y*(axis_y_upu_axes2_y*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y) +
+            omega_z*(axis_y_upu_axes2_z*upu_n_m1_in_axes2_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y)
         )
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_tip_x = (
-        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
-            axis_x_upu_axes2_z*upu_S_dot_z
+        # (upu-qd_1) rate of joint 1
+        upu_qd_1 = (
+        (axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z + upu_eta_1*upu_n_c_t)/upu_w_1_t
         )
-        # (upu-qd_3) rate of joint 3
-        upu_qd_3_t = (
-        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
-        )
-        upu_qd_3_t_2 = (
-        (axis_z_upu_axes2_in_base_x*upu_S_dot_x + axis_z_upu_axes2_in_base_y*upu_S_dot_y +
-            axis_z_upu_axes2_in_base_z*upu_S_dot_z + upu_eta_1*upu_n_c_z)/upu_w_1_t_3
+        # (upu-qd_2) rate of joint 2
+        upu_qd_2 = (
+        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+            axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_t = upu_qd_3_t_2*upu_s_2
-        upu_omega_1_t_2 = upu_c_2*upu_qd_3_t_2
-        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
+        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
+        # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
         # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_z = 2.0*upu_S_dot_tip_x*upu_omega_1_t_2 + 2.0*upu_root_2*upu_zeta_2_y
+        upu_bias_in_axes2_z = (
+        2.0*upu_W_2_in_axes2_xz*upu_root_2 - 2.0*upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y
+        )
         # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
-        upu_rel_o_z = (
-        axis_z_upu_axes2_in_base_x*(omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2) +
-            axis_z_upu_axes2_in_base_y*(omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3) +
-            axis_z_upu_axes2_in_base_z*(omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t) - upu_bias_z
+        upu_rel_o_in_axes2_z = (
+        axis_z_upu_axes2_x*(omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4) +
+            axis_z_upu_axes2_y*(omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5) +
+            axis_z_upu_axes2_z*(omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3) -
+            upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_omega_tip_x = (
+        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        upu_omega_tip_y = (
-        axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
-            axis_y_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_omega_tip_z = (
-        axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
-            axis_z_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_z = (
+        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_x = (
-        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z
+        upu_nd_m1_in_axes2_x = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
         )
-        upu_nd_m1_y = (
-        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
-            upu_end_p1_r3_y*upu_omega_tip_z
+        upu_nd_m1_in_axes2_y = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = upu_end_p1_r3_y*upu_omega_1_t_2*upu_qd_3_t - upu_end_p1_r3_x*upu_zeta_2_y
-        upu_nu_1_t_2 = (
-        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
-            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        upu_nu_1_t = (
+        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*upu_qd_2
         )
-        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        upu_nu_1_t_2 = (
+        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
+            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
+            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
+        )
+        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-        upu_gamma_c1 = upu_nu_1 - upu_n_c_z*upu_rel_o_z
+        upu_gamma_c1 = upu_nu_1 - upu_n_c_t*upu_rel_o_in_axes2_z
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
+        # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_upu[0][leg]] = upu_gamma_c1
     return ok, (out_constraint_bias,)
 
@@ -3605,8 +3708,9 @@ def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
     (
-    J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
-        gravity_z, h_star_x, h_star_y, h_star_z, platform_mass,
+    J_star_in_platform_xx, J_star_in_platform_xy, J_star_in_platform_xz, J_star_in_platform_yy,
+        J_star_in_platform_yz, J_star_in_platform_zz, gravity_x, gravity_y, gravity_z,
+        h_star_in_platform_x, h_star_in_platform_y, h_star_in_platform_z, platform_mass,
     ) = shared
     X_0 = X[0]
     X_1 = X[1]
@@ -3673,90 +3777,104 @@ def _run_required(m, X, V, A):
     out_required = m.zeros("required")
     out_H = m.zeros("H")
     out_Hk = m.zeros("Hk")
-    # (h_star) first moment about the platform origin
-    h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z
-    h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
-    h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (W_p) centripetal tensor of the platform
-    W_p_t = omega_x*omega_x
-    W_p_t_2 = omega_y*omega_y
-    W_p_t_3 = omega_z*omega_z
     W_p_xy = omega_x*omega_y
     W_p_xz = omega_x*omega_z
     W_p_yz = omega_y*omega_z
-    # (Z_q) gyroscopic moment and moment of the weight of the platform
-    omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
-    omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
-    omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
-    Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z
-    Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z
-    Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z
+    # (h_star) first moment about the platform origin
+    h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z
+    h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z
+    h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z
     # (a_t) acceleration of the platform origin, less gravity
     a_t_x = t_ddot_x - gravity_x
     a_t_y = t_ddot_y - gravity_y
     a_t_z = t_ddot_z - gravity_z
+    a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
+    a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
+    a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (f_p) inertia force of the platform less its weight
+    f_p_t = omega_x*omega_x
+    f_p_t_2 = omega_y*omega_y
+    f_p_t_3 = omega_z*omega_z
     f_p_x = (
-    a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) + h_star_in_base_z*(W_p_xz +
-        alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3)
+    a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz + alpha_y) -
+        h_star_x*(f_p_t_2 + f_p_t_3)
     )
     f_p_y = (
-    a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) + h_star_in_base_z*(W_p_yz -
-        alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3)
+    a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz - alpha_x) -
+        h_star_y*(f_p_t + f_p_t_3)
     )
     f_p_z = (
-    a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) + h_star_in_base_y*(W_p_yz +
-        alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2)
+    a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz + alpha_x) -
+        h_star_z*(f_p_t + f_p_t_2)
     )
-    # (a_t) acceleration of the platform origin, less gravity
-    a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z
-    a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z
-    a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z
     # (mu_p) inertia moment of the platform less that of its weight
-    alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
-    alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
-    alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
-    mu_p_x = (
-    J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z + Z_q_t_3*omega_r0_y +
-        a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z
+    omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z
+    omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z
+    omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z
+    mu_p_t = (
+    J_star_in_platform_xx*omega_in_platform_x + J_star_in_platform_xy*omega_in_platform_y +
+        J_star_in_platform_xz*omega_in_platform_z
     )
-    mu_p_y = (
-    J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z + Z_q_t*omega_r0_z +
-        a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x
+    mu_p_t_2 = (
+    J_star_in_platform_xy*omega_in_platform_x + J_star_in_platform_yy*omega_in_platform_y +
+        J_star_in_platform_yz*omega_in_platform_z
     )
-    mu_p_z = (
-    J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z + Z_q_t_2*omega_r0_x +
-        a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y
+    mu_p_t_3 = (
+    J_star_in_platform_xz*omega_in_platform_x + J_star_in_platform_yz*omega_in_platform_y +
+        J_star_in_platform_zz*omega_in_platform_z
     )
-    mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
-    mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
-    mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
+    alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z
+    alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z
+    alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z
+    mu_p_in_platform_x = (
+    J_star_in_platform_xx*alpha_in_platform_x + J_star_in_platform_xy*alpha_in_platform_y +
+        J_star_in_platform_xz*alpha_in_platform_z + a_t_in_platform_z*h_star_in_platform_y +
+        mu_p_t_3*omega_in_platform_y - a_t_in_platform_y*h_star_in_platform_z -
+        mu_p_t_2*omega_in_platform_z
+    )
+    mu_p_in_platform_y = (
+    J_star_in_platform_xy*alpha_in_platform_x + J_star_in_platform_yy*alpha_in_platform_y +
+        J_star_in_platform_yz*alpha_in_platform_z + a_t_in_platform_x*h_star_in_platform_z +
+        mu_p_t*omega_in_platform_z - a_t_in_platform_z*h_star_in_platform_x -
+        mu_p_t_3*omega_in_platform_x
+    )
+    mu_p_in_platform_z = (
+    J_star_in_platform_xz*alpha_in_platform_x + J_star_in_platform_yz*alpha_in_platform_y +
+        J_star_in_platform_zz*alpha_in_platform_z + a_t_in_platform_y*h_star_in_platform_x +
+        mu_p_t_2*omega_in_platform_x - a_t_in_platform_x*h_star_in_platform_y -
+        mu_p_t*omega_in_platform_y
+    )
+    mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y + R_xz*mu_p_in_platform_z
+    mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y + R_yz*mu_p_in_platform_z
+    mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y + R_zz*mu_p_in_platform_z
     sums = [0.0] * 6
     for leg, k in legs[0]:
         (
-        upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
-            upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y, upu_g_r0_z,
-            upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z, upu_link3_mass,
-            upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-            upu_platform_point_z,
+        upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
+            upu_Sigma_2_in_axes2_xx, upu_Sigma_2_in_axes2_yy, upu_Sigma_2_in_axes2_zz,
+            upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx, upu_base_frame_xy,
+            upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+            upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+            upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_2_in_spec2_x,
+            upu_h_2_in_spec2_y, upu_h_2_in_spec2_z, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y,
+            upu_h_3_in_spec2_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
+            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -3769,327 +3887,335 @@ def _run_required(m, X, V, A):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_S_dot_t = upu_s_1*upu_s_2
+        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y
+        upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z
+        upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t_3
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_4
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_5
+        upu_S_dot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
+        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
+        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
-        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
-        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
-        upu_S_dot_x = t_dot_x + upu_S_dot_t
-        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
-        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
-        upu_S_dot_tip_x = (
-        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
-            axis_x_upu_axes2_z*upu_S_dot_z
-        )
-        # (upu-qd_3) rate of joint 3
-        upu_qd_3_t = (
-        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
-        )
-        # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t = upu_qd_3_t*upu_qd_3_t
-        # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_t = 2.0*upu_S_dot_tip_x
-        upu_bias_t_2 = upu_bias_t*upu_qd_3_t
-        # (upu-nd_m1) rate of moment direction 1
-        upu_omega_tip_x = (
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
+        # (upu-qd_1) rate of joint 1
+        upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        upu_omega_tip_y = (
-        axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
-            axis_y_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_omega_tip_z = (
-        axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
-            axis_z_upu_axes2_in_base_z*omega_z
+        upu_qd_1 = (
+        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z - upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
-        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x
-        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
-        upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y
-        upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2
-        # (upu-H_a_3) moment of the column's unit force about the platform origin
-        upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y - axis_x_upu_axes2_y*upu_q_in_base_z
-        upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z - axis_x_upu_axes2_z*upu_q_in_base_x
-        upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x - axis_x_upu_axes2_x*upu_q_in_base_y
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
-        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
-        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
-        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
-        upu_Hk_a_1_x = (
-        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x + upu_n_c_t_2*upu_q_in_base_z -
-            axis_x_upu_axes2_x*upu_end_p1_r3_y - upu_n_c_t_3*upu_q_in_base_y
+        # (upu-qd_2) rate of joint 2
+        upu_qd_2 = (
+        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+            axis_y_upu_axes2_z*upu_S_dot_z)
         )
-        upu_Hk_a_1_y = (
-        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x + upu_n_c_t_3*upu_q_in_base_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y - upu_n_c_t*upu_q_in_base_z
-        )
-        upu_Hk_a_1_z = (
-        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x + upu_n_c_t*upu_q_in_base_y -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y - upu_n_c_t_2*upu_q_in_base_x
-        )
-        # (upu-qd_1) rate of joint 1
-        upu_qd_1_t = (
-        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
-            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y))
-        )
-        # (upu-a_p) acceleration of the connection point without its centripetal part
-        upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y
-        upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z
-        upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x
-        # (upu-S_ddot) acceleration of the connection point
-        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
-        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
-        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_t = upu_qd_1_t*upu_s_2
-        upu_omega_1_t_2 = upu_c_2*upu_qd_1_t
-        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t
-        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
+        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t_2 = upu_omega_1_t*upu_omega_1_t
-        upu_W_2_t_3 = upu_omega_1_t_2*upu_omega_1_t_2
-        upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2
+        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
+        # (upu-a_p) acceleration of the connection point without its centripetal part
+        upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y
+        upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z
+        upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x
+        # (upu-S_ddot) acceleration of the connection point
+        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
+        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
+        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
         # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2
-        upu_bias_z = upu_bias_t_3 + 2.0*upu_root_2*upu_zeta_2_y
+        upu_bias_t = 2.0*upu_S_dot_in_axes2_x
+        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2
         # (upu-rel) acceleration of the connection point left to the joint accelerations
-        upu_rel_z = (
-        axis_z_upu_axes2_in_base_x*upu_S_ddot_x + axis_z_upu_axes2_in_base_y*upu_S_ddot_y +
-            axis_z_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_z
+        upu_rel_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_nd_m1_x = (
-        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z
+        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_omega_in_axes2_z = (
+        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_y = (
-        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
-            upu_end_p1_r3_y*upu_omega_tip_z
+        upu_nd_m1_in_axes2_x = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        )
+        upu_nd_m1_in_axes2_y = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t = (
+        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
+        )
         upu_nu_1_t_2 = (
-        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
-            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) +
+            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
+            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y)
         )
         upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
-        upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
+        upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
+            alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
         )
         upu_etad_1 = upu_nu_1 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1_t = (
-        axis_y_upu_axes2_in_base_x*upu_S_ddot_x + axis_y_upu_axes2_in_base_y*upu_S_ddot_y +
-            axis_y_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_t_2
-        )
-        upu_qdd_1_t_2 = inv_upu_root_2*upu_qdd_1_t
-        upu_qdd_1_t_3 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z)
+        upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t)
         # (upu-alpha_1) angular acceleration of link 1
-        upu_alpha_1_t = upu_qdd_1_t_3*upu_s_2
-        upu_alpha_1_t_2 = upu_c_2*upu_qdd_1_t_3
+        upu_alpha_1_in_axes2_x = upu_qdd_1*upu_s_2
+        upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1
         # (upu-alpha_2) angular acceleration of link 2
-        upu_alpha_2_x = upu_alpha_1_t - upu_zeta_2_x
-        upu_alpha_2_y = -upu_alpha_1_t_2 - upu_zeta_2_y
+        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x
+        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2) acceleration tensor of link 2
-        upu_B_2_xy = -2.0*upu_W_2_xy - upu_qdd_1_t_2
-        upu_B_2_zx = upu_zeta_2_y - upu_alpha_2_y
-        upu_B_2_zy = upu_alpha_2_x - upu_zeta_2_x
+        upu_B_2_t = upu_bias_t*upu_qd_2
+        upu_B_2_t_2 = (
+        axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
+            axis_y_upu_axes2_z*upu_S_ddot_z - upu_B_2_t
+        )
+        upu_B_2_in_axes2_yx = inv_upu_root_2*upu_B_2_t_2
+        upu_B_2_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx
+        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y
+        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x
         # (upu-acc_3) acceleration of the reference point of link 3, less gravity
-        upu_acc_3_x = (
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t
+        upu_acc_3_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_t_4*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_t_3*upu_c_2 + upu_acc_3_t_4*upu_s_2
+        upu_acc_3_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
-            axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_r3_x
+            axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_in_axes2_x
         )
-        upu_acc_3_y = upu_bias_t_2 + upu_qdd_1_t - upu_g_r3_y
-        upu_acc_3_z = upu_bias_t_3 + upu_B_2_zx*upu_root_2 - upu_g_r1_x
+        upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y
+        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_root_2 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-f_3) inertia force of link 3 less its weight
-        upu_f_3_x = (
-        upu_acc_3_x*upu_link3_mass - upu_B_2_xy*upu_h_3_z - upu_alpha_1_t_2*upu_h_3_y -
-            upu_h_3_x*(upu_W_2_t + upu_W_2_t_3)
+        upu_f_3_t = upu_qd_2*upu_qd_2
+        upu_f_3_t_2 = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
+        upu_f_3_t_3 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_f_3_in_axes2_x = (
+        upu_acc_3_in_axes2_x*upu_link3_mass + upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y -
+            upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_f_3_t + upu_f_3_t_3)
         )
-        upu_f_3_y = (
-        upu_acc_3_y*upu_link3_mass + upu_h_3_x*upu_qdd_1_t_2 + upu_h_3_z*(upu_W_2_t + upu_W_2_t_2)
-            - upu_alpha_1_t*upu_h_3_y
+        upu_f_3_in_axes2_y = (
+        upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_y*upu_link3_mass +
+            upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2) -
+            upu_alpha_1_in_axes2_x*upu_h_3_in_spec2_y
         )
-        upu_f_3_z = (
-        upu_B_2_zx*upu_h_3_x + upu_acc_3_z*upu_link3_mass - upu_B_2_zy*upu_h_3_z -
-            upu_h_3_y*(upu_W_2_t_2 + upu_W_2_t_3)
+        upu_f_3_in_axes2_z = (
+        upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass -
+            upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_t_2 +
+            upu_f_3_t_3)
         )
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        upu_mu_2_x = (
-        upu_B_2_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_1_t_2 + upu_Sigma_2_zz*upu_alpha_1_t
-            + upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_zx*upu_J_group_2_xy -
-            upu_J_group_2_yz*(upu_W_2_t - upu_W_2_t_3) - upu_acc_3_y*upu_h_3_y -
-            upu_acc_3_z*upu_h_3_z
+        upu_mu_2_in_axes2_x = (
+        upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
+            upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
+            upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
         )
-        upu_mu_2_y = (
-        upu_B_2_zy*upu_J_group_2_xy + upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_2) +
-            upu_acc_3_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x - upu_B_2_xy*upu_J_group_2_yz -
-            upu_B_2_zx*upu_Sigma_2_xx - upu_Sigma_2_zz*upu_alpha_1_t_2 - upu_acc_3_z*upu_h_3_x -
-            upu_g_r3_x*upu_h_2_y
+        upu_mu_2_in_axes2_y = (
+        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_f_3_t -
+            upu_f_3_t_2) + upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
+            upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
+            - upu_g_in_axes2_x*upu_h_2_in_spec2_y
         )
-        upu_mu_2_z = (
-        upu_J_group_2_xy*(upu_W_2_t_2 - upu_W_2_t_3) + upu_J_group_2_xz*upu_alpha_1_t +
-            upu_Sigma_2_xx*upu_qdd_1_t_2 + upu_acc_3_x*upu_h_3_z + upu_acc_3_y*upu_h_3_x -
-            upu_B_2_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_t_2 - upu_g_r3_x*upu_h_2_z -
-            upu_g_r3_y*upu_h_2_x
+        upu_mu_2_in_axes2_z = (
+        upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 -
+            upu_f_3_t_3) + upu_J_group_2_in_axes2_xz*upu_alpha_1_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
+            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
+            upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        upu_N_2_y = upu_mu_2_y - upu_f_3_z*upu_root_2
-        upu_N_2_r0_y = upu_mu_2_x*upu_s_2 - upu_N_2_y*upu_c_2
+        upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_root_2
+        upu_N_2_in_axes1_z = upu_N_2_in_axes2_y*upu_c_2 + upu_mu_2_in_axes2_x*upu_s_2
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_G_t = upu_f_3_y + inv_upu_root_2*upu_mu_2_z
-        upu_G_t_2 = inv_upu_w_1_t_25*upu_N_2_r0_y
-        upu_G_t_3 = inv_upu_w_1_t_25*upu_N_2_r0_y*upu_n_c_z
-        # (upu-c) leg force on the platform without actuation and without the mass at the connection point
-        upu_c_in_base_x = (
-        -axis_x_upu_axes2_x*upu_f_3_x - axis_y_upu_axes2_in_base_x*upu_G_t -
-            axis_z_upu_axes2_in_base_x*upu_G_t_2
-        )
-        upu_c_in_base_y = (
-        -axis_x_upu_axes2_y*upu_f_3_x - axis_y_upu_axes2_in_base_y*upu_G_t -
-            axis_z_upu_axes2_in_base_y*upu_G_t_2
-        )
-        upu_c_in_base_z = (
-        -axis_x_upu_axes2_z*upu_f_3_x - axis_y_upu_axes2_in_base_z*upu_G_t -
-            axis_z_upu_axes2_in_base_z*upu_G_t_2
-        )
+        upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_root_2*upu_mu_2_in_axes2_z
+        upu_G_in_axes2_z = upu_N_2_in_axes1_z*upu_w_1_in_axes2_z
+        # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_G_m1 = upu_N_2_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
         # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_G_m_x = upu_G_t_3*upu_end_p1_r3_y
-        upu_G_m_y = upu_G_t_3*upu_end_p1_r3_x
+        upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y
+        # (upu-c) leg force on the platform without actuation and without the mass at the connection point
+        upu_c_x = (
+        -axis_x_upu_axes2_x*upu_f_3_in_axes2_x - axis_y_upu_axes2_x*upu_G_in_axes2_y -
+            axis_z_upu_axes2_x*upu_G_in_axes2_z
+        )
+        upu_c_y = (
+        -axis_x_upu_axes2_y*upu_f_3_in_axes2_x - axis_y_upu_axes2_y*upu_G_in_axes2_y -
+            axis_z_upu_axes2_y*upu_G_in_axes2_z
+        )
+        upu_c_z = (
+        -axis_x_upu_axes2_z*upu_f_3_in_axes2_x - axis_y_upu_axes2_z*upu_G_in_axes2_y -
+            axis_z_upu_axes2_z*upu_G_in_axes2_z
+        )
+        # (upu-c_m) moment of the leg on the platform without actuation
+        upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y
         # (R_a) moment that actuators and external wrench must give
         upu_R_a_t = (
-        axis_x_upu_axes2_x*upu_G_m_x + upu_c_in_base_z*upu_q_in_base_y -
-            axis_y_upu_axes2_in_base_x*upu_G_m_y - upu_c_in_base_y*upu_q_in_base_z
+        axis_y_upu_axes2_x*upu_G_m_in_axes2_y + upu_c_y*upu_q_z -
+            axis_x_upu_axes2_x*upu_c_m_in_axes2_x - upu_c_z*upu_q_y
         )
         upu_R_a_t_2 = (
-        axis_x_upu_axes2_y*upu_G_m_x + upu_c_in_base_x*upu_q_in_base_z -
-            axis_y_upu_axes2_in_base_y*upu_G_m_y - upu_c_in_base_z*upu_q_in_base_x
+        axis_y_upu_axes2_y*upu_G_m_in_axes2_y + upu_c_z*upu_q_x -
+            axis_x_upu_axes2_y*upu_c_m_in_axes2_x - upu_c_x*upu_q_z
         )
         upu_R_a_t_3 = (
-        axis_x_upu_axes2_z*upu_G_m_x + upu_c_in_base_y*upu_q_in_base_x -
-            axis_y_upu_axes2_in_base_z*upu_G_m_y - upu_c_in_base_x*upu_q_in_base_y
+        axis_y_upu_axes2_z*upu_G_m_in_axes2_y + upu_c_x*upu_q_y -
+            axis_x_upu_axes2_z*upu_c_m_in_axes2_x - upu_c_y*upu_q_x
+        )
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        upu_H_a_3_x = axis_x_upu_axes2_z*upu_q_y - axis_x_upu_axes2_y*upu_q_z
+        upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x
+        upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
+        upu_Hk_a_1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y - upu_n_c_t_4*upu_q_y
+        )
+        upu_Hk_a_1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y - upu_n_c_t_2*upu_q_z
+        )
+        upu_Hk_a_1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y - upu_n_c_t_3*upu_q_x
         )
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
-        upu_c_in_base_x, upu_c_in_base_y, upu_c_in_base_z, upu_R_a_t, upu_R_a_t_2,
-            upu_R_a_t_3,
+        upu_c_x, upu_c_y, upu_c_z, upu_R_a_t, upu_R_a_t_2, upu_R_a_t_3,
         ))
+        # (upu-w_3) force part of reciprocal wrench 3
         out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
         out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
         out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
-        out_H[_H_upu[3][leg]] = upu_H_a_3_t
-        out_H[_H_upu[4][leg]] = upu_H_a_3_t_2
-        out_H[_H_upu[5][leg]] = upu_H_a_3_t_3
-        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t
-        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_2
-        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_3
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        out_H[_H_upu[3][leg]] = upu_H_a_3_x
+        out_H[_H_upu[4][leg]] = upu_H_a_3_y
+        out_H[_H_upu[5][leg]] = upu_H_a_3_z
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
+        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
+        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
         out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
-    total_upu_x, total_upu_y, total_upu_z, total_upu_x_2, total_upu_y_2, total_upu_z_2 = sums
+    R_t_t, R_t_t_2, R_t_t_3, R_a_upu_x, R_a_upu_y, R_a_upu_z = sums
     # (R_t) force that actuators and external wrench must give
-    R_t_x = f_p_x - total_upu_x
-    R_t_y = f_p_y - total_upu_y
-    R_t_z = f_p_z - total_upu_z
+    R_t_x = f_p_x - R_t_t
+    R_t_y = f_p_y - R_t_t_2
+    R_t_z = f_p_z - R_t_t_3
     # (R_a) moment that actuators and external wrench must give
-    R_a_x = mu_p_in_base_x - total_upu_x_2
-    R_a_y = mu_p_in_base_y - total_upu_y_2
-    R_a_z = mu_p_in_base_z - total_upu_z_2
+    R_a_x = R_a_upu_x + mu_p_x
+    R_a_y = R_a_upu_y + mu_p_y
+    R_a_z = R_a_upu_z + mu_p_z
+    # (R_t) force that actuators and external wrench must give
     out_required[0] = R_t_x
     out_required[1] = R_t_y
     out_required[2] = R_t_z
+    # (R_a) moment that actuators and external wrench must give
     out_required[3] = R_a_x
     out_required[4] = R_a_y
     out_required[5] = R_a_z
@@ -4170,28 +4296,29 @@ def _run_inverse_kinematics(m, X):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-q_1) displacement of joint 1
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_q_1 = atan2(inv_upu_root_1*upu_py_1, inv_upu_root_1*upu_px_1)
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
-        # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        # (upu-q_1) displacement of joint 1
-        upu_q_1 = atan2(inv_upu_root_1*upu_py_1, inv_upu_root_1*upu_px_1)
         # (upu-q_2) displacement of joint 2
-        upu_q_2 = atan2(-inv_upu_root_2*upu_xi_1_t, inv_upu_root_2*upu_root_1)
+        inv_upu_root_2 = 1.0/upu_root_2
+        upu_q_2 = atan2(-inv_upu_root_2*upu_xi_1_in_axes1_z, inv_upu_root_2*upu_root_1)
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
+        # (upu-q_1) displacement of joint 1
         out_q[_q_upu[0][leg]] = upu_q_1
+        # (upu-q_2) displacement of joint 2
         out_q[_q_upu[1][leg]] = upu_q_2
+        # (upu-q_3) displacement of joint 3
         out_q[_q_upu[2][leg]] = upu_root_2
     return ok, (out_q,)
 
@@ -4260,18 +4387,18 @@ def _run_joint_rates(m, X, V):
             upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -4284,115 +4411,117 @@ def _run_joint_rates(m, X, V):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_S_dot_t = upu_s_1*upu_s_2
+        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        upu_S_dot_x = t_dot_x + omega_y*upu_q_z - omega_z*upu_q_y
+        upu_S_dot_y = t_dot_y + omega_z*upu_q_x - omega_x*upu_q_z
+        upu_S_dot_z = t_dot_z + omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_x = t_dot_x + omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
-        upu_S_dot_y = t_dot_y + omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
-        upu_S_dot_z = t_dot_z + omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
-        upu_S_dot_tip_x = (
-        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
-            axis_x_upu_axes2_z*upu_S_dot_z
-        )
-        # (upu-qd_3) rate of joint 3
-        upu_qd_3_t = (
-        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
-        )
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
         # (upu-qd_1) rate of joint 1
         upu_qd_1_t = (
-        axis_z_upu_axes2_in_base_x*upu_S_dot_x + axis_z_upu_axes2_in_base_y*upu_S_dot_y +
-            axis_z_upu_axes2_in_base_z*upu_S_dot_z -
-            upu_n_c_z*(upu_end_p1_r3_y*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z) - upu_end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z))
+        axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z -
+            upu_n_c_t*(upu_end_p1_in_axes2_y*(axis_x_upu_axes2_x*omega_x +
+            axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
+            upu_n_m1_in_axes2_y*(axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
+            axis_y_upu_axes2_z*omega_z))
         )
-        upu_qd_1_t_2 = upu_qd_1_t/upu_w_1_t_3
+        upu_qd_1 = upu_qd_1_t/upu_w_1_t
+        # (upu-qd_2) rate of joint 2
+        upu_qd_2 = (
+        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+            axis_y_upu_axes2_z*upu_S_dot_z)
+        )
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
-        out_qd[_qd_upu[0][leg]] = upu_qd_1_t_2
-        out_qd[_qd_upu[1][leg]] = upu_qd_3_t
-        out_qd[_qd_upu[2][leg]] = upu_S_dot_tip_x
+        # (upu-qd_1) rate of joint 1
+        out_qd[_qd_upu[0][leg]] = upu_qd_1
+        # (upu-qd_2) rate of joint 2
+        out_qd[_qd_upu[1][leg]] = upu_qd_2
+        # (upu-qd_3) rate of joint 3
+        out_qd[_qd_upu[2][leg]] = upu_S_dot_in_axes2_x
     return ok, (out_qd,)
 
 
@@ -4473,18 +4602,18 @@ def _run_joint_accelerations(m, X, V, A):
             upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -4497,187 +4626,191 @@ def _run_joint_accelerations(m, X, V, A):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_S_dot_t = upu_s_1*upu_s_2
+        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y
+        upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z
+        upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t_3
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_4
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_5
+        upu_S_dot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
-        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
-        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
-        upu_S_dot_x = t_dot_x + upu_S_dot_t
-        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
-        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
-        upu_S_dot_tip_x = (
-        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
-            axis_x_upu_axes2_z*upu_S_dot_z
-        )
-        # (upu-qd_3) rate of joint 3
-        upu_qd_3_t = (
-        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
-        )
-        # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_t = 2.0*upu_S_dot_tip_x
-        # (upu-nd_m1) rate of moment direction 1
-        upu_omega_tip_x = (
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
+        # (upu-qd_1) rate of joint 1
+        upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        upu_omega_tip_y = (
-        axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
-            axis_y_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_omega_tip_z = (
-        axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
-            axis_z_upu_axes2_in_base_z*omega_z
+        upu_qd_1 = (
+        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z - upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
-        # (upu-qd_1) rate of joint 1
-        upu_qd_1_t = (
-        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
-            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y))
+        # (upu-qd_2) rate of joint 2
+        upu_qd_2 = (
+        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+            axis_y_upu_axes2_z*upu_S_dot_z)
         )
-        # (upu-a_p) acceleration of the connection point without its centripetal part
-        upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y
-        upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z
-        upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x
-        # (upu-S_ddot) acceleration of the connection point
-        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
-        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
-        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_t = upu_qd_1_t*upu_s_2
-        upu_omega_1_t_2 = upu_c_2*upu_qd_1_t
-        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
+        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
+        # (upu-W_2) centripetal tensor of link 2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        # (upu-a_p) acceleration of the connection point without its centripetal part
+        upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y
+        upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z
+        upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x
+        # (upu-S_ddot) acceleration of the connection point
+        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
+        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
+        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
         # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_z = upu_bias_t*upu_omega_1_t_2 + 2.0*upu_root_2*upu_zeta_2_y
-        # (upu-rel) acceleration of the connection point left to the joint accelerations
-        upu_rel_x = (
-        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
-            axis_x_upu_axes2_z*upu_S_ddot_z + upu_root_2*(upu_omega_1_t_2*upu_omega_1_t_2 +
-            upu_qd_3_t*upu_qd_3_t)
+        upu_bias_t = 2.0*upu_S_dot_in_axes2_x
+        upu_bias_in_axes2_z = (
+        2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t*upu_omega_1_in_axes2_y
         )
-        upu_rel_z = (
-        axis_z_upu_axes2_in_base_x*upu_S_ddot_x + axis_z_upu_axes2_in_base_y*upu_S_ddot_y +
-            axis_z_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_z
+        # (upu-rel) acceleration of the connection point left to the joint accelerations
+        upu_rel_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
+            axis_x_upu_axes2_z*upu_S_ddot_z +
+            upu_root_2*(upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y + upu_qd_2*upu_qd_2)
+        )
+        upu_rel_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_nd_m1_x = (
-        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z
+        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_omega_in_axes2_z = (
+        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_y = (
-        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
-            upu_end_p1_r3_y*upu_omega_tip_z
+        upu_nd_m1_in_axes2_x = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        )
+        upu_nd_m1_in_axes2_y = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = upu_end_p1_r3_y*upu_omega_1_t_2*upu_qd_3_t - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t = (
+        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+            upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*upu_qd_2
+        )
         upu_nu_1_t_2 = (
-        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
-            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) +
+            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
+            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y)
         )
         upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
-        upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
+        upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
+            alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
         )
         upu_etad_1 = upu_nu_1 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1_t = (
-        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_ddot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_ddot_y + axis_y_upu_axes2_in_base_z*upu_S_ddot_z -
-            upu_bias_t*upu_qd_3_t) + upu_omega_1_t*upu_omega_1_t_2
+        upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t)
+        # (upu-qdd_2) acceleration of joint 2
+        upu_qdd_2 = (
+        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
+            axis_y_upu_axes2_z*upu_S_ddot_z - upu_bias_t*upu_qd_2) -
+            upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         )
-        upu_qdd_1_t_2 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z)
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
-        out_qdd[_qdd_upu[0][leg]] = upu_qdd_1_t_2
-        out_qdd[_qdd_upu[1][leg]] = upu_qdd_1_t
-        out_qdd[_qdd_upu[2][leg]] = upu_rel_x
+        # (upu-qdd_1) acceleration of joint 1
+        out_qdd[_qdd_upu[0][leg]] = upu_qdd_1
+        # (upu-qdd_2) acceleration of joint 2
+        out_qdd[_qdd_upu[1][leg]] = upu_qdd_2
+        # (upu-qdd_3) acceleration of joint 3
+        out_qdd[_qdd_upu[2][leg]] = upu_rel_in_axes2_x
     return ok, (out_qdd,)
 
 
@@ -4755,29 +4888,28 @@ def _run_constraints(m, X):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        # (upu-phi_c1) angle by which the leg misses the platform, about a direction left out
+        upu_phi_c1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_phi_c1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
         inv_upu_root_1 = 1.0/upu_root_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_x = (
-        inv_upu_root_1*upu_end_p1_r0_y*upu_px_1 - inv_upu_root_1*upu_end_p1_r0_x*upu_py_1
+        upu_end_p1_in_axes2_z = (
+        inv_upu_root_1*upu_phi_c1_t_2*upu_px_1 - inv_upu_root_1*upu_phi_c1_t*upu_py_1
         )
         ok = ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
-        out_constraints[_constraints_upu[0][leg]] = -upu_end_p1_r1_x
+        # (upu-phi_c1) angle by which the leg misses the platform, about a direction left out
+        out_constraints[_constraints_upu[0][leg]] = -upu_end_p1_in_axes2_z
     return ok, (out_constraints,)
 
 
@@ -4852,29 +4984,30 @@ def _run_legs(m, X, V, A):
     out_constraint_direction = m.zeros("constraint_direction")
     for leg, k in legs[0]:
         (
-        upu_J_group_2_xy, upu_J_group_2_xz, upu_J_group_2_yz, upu_Sigma_2_xx, upu_Sigma_2_yy,
-            upu_Sigma_2_zz, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-            upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-            upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-            upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x, upu_g_r0_y, upu_g_r0_z,
-            upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y, upu_h_3_z, upu_link3_mass,
-            upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-            upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-            upu_platform_point_z,
+        upu_J_group_2_in_axes2_xy, upu_J_group_2_in_axes2_xz, upu_J_group_2_in_axes2_yz,
+            upu_Sigma_2_in_axes2_xx, upu_Sigma_2_in_axes2_yy, upu_Sigma_2_in_axes2_zz,
+            upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx, upu_base_frame_xy,
+            upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+            upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+            upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_2_in_spec2_x,
+            upu_h_2_in_spec2_y, upu_h_2_in_spec2_z, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y,
+            upu_h_3_in_spec2_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
+            upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+            upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -4887,298 +5020,304 @@ def _run_legs(m, X, V, A):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        # (upu-S_dot) velocity of the connection point
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_S_dot_t = upu_s_1*upu_s_2
+        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+            upu_base_frame_xz*upu_c_2
+        )
+        axis_y_upu_axes2_y = (
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+            upu_base_frame_yz*upu_c_2
+        )
+        axis_y_upu_axes2_z = (
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+            upu_base_frame_zz*upu_c_2
+        )
+        axis_x_upu_axes2_x = (
+        axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        )
+        axis_x_upu_axes2_y = (
+        axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        )
+        axis_x_upu_axes2_z = (
+        axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
+        )
+        upu_S_dot_t_3 = omega_y*upu_q_z - omega_z*upu_q_y
+        upu_S_dot_t_4 = omega_z*upu_q_x - omega_x*upu_q_z
+        upu_S_dot_t_5 = omega_x*upu_q_y - omega_y*upu_q_x
+        upu_S_dot_x = t_dot_x + upu_S_dot_t_3
+        upu_S_dot_y = t_dot_y + upu_S_dot_t_4
+        upu_S_dot_z = t_dot_z + upu_S_dot_t_5
+        upu_S_dot_in_axes2_x = (
+        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
+            axis_x_upu_axes2_z*upu_S_dot_z
+        )
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_x = upu_end_p1_r0_y*upu_s_1 - upu_c_1*upu_end_p1_r0_x
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y - axis_x_upu_axes2_y*upu_end_p1_in_axes2_y
+        )
+        upu_n_m1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
+        )
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
+        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
+        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
-        )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
-        )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        inv_upu_w_1_t_25 = 1.0/upu_w_1_t_3
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_in_base_x = (
-        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x - axis_x_upu_axes2_x*upu_end_p1_r3_y
-        )
-        upu_n_m1_in_base_y = (
-        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x - axis_x_upu_axes2_y*upu_end_p1_r3_y
-        )
-        upu_n_m1_in_base_z = (
-        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x - axis_x_upu_axes2_z*upu_end_p1_r3_y
-        )
-        # (upu-S_dot) velocity of the connection point
-        upu_S_dot_t = omega_y*upu_q_in_base_z - omega_z*upu_q_in_base_y
-        upu_S_dot_t_2 = omega_z*upu_q_in_base_x - omega_x*upu_q_in_base_z
-        upu_S_dot_t_3 = omega_x*upu_q_in_base_y - omega_y*upu_q_in_base_x
-        upu_S_dot_x = t_dot_x + upu_S_dot_t
-        upu_S_dot_y = t_dot_y + upu_S_dot_t_2
-        upu_S_dot_z = t_dot_z + upu_S_dot_t_3
-        upu_S_dot_tip_x = (
-        axis_x_upu_axes2_x*upu_S_dot_x + axis_x_upu_axes2_y*upu_S_dot_y +
-            axis_x_upu_axes2_z*upu_S_dot_z
-        )
-        # (upu-qd_3) rate of joint 3
-        upu_qd_3_t = (
-        inv_upu_root_2*(axis_y_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_y_upu_axes2_in_base_y*upu_S_dot_y + axis_y_upu_axes2_in_base_z*upu_S_dot_z)
-        )
-        # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t = upu_qd_3_t*upu_qd_3_t
-        # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_t = 2.0*upu_S_dot_tip_x
-        upu_bias_t_2 = upu_bias_t*upu_qd_3_t
-        # (upu-nd_m1) rate of moment direction 1
-        upu_omega_tip_x = (
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_in_axes2_z = 1.0/upu_w_1_t
+        # (upu-qd_1) rate of joint 1
+        upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
-        upu_omega_tip_y = (
-        axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
-            axis_y_upu_axes2_in_base_z*omega_z
+        upu_omega_in_axes2_y = (
+        axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
         )
-        upu_omega_tip_z = (
-        axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
-            axis_z_upu_axes2_in_base_z*omega_z
+        upu_qd_1 = (
+        upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
+            axis_z_upu_axes2_z*upu_S_dot_z - upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
-        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_g_r1_x = upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x
-        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
-        upu_g_r3_x = upu_g_r0_z*upu_s_2 - upu_c_2*upu_g_r1_y
-        upu_g_r3_y = -upu_c_2*upu_g_r0_z - upu_g_r1_y*upu_s_2
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
-        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
-        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
-        # (upu-qd_1) rate of joint 1
-        upu_qd_1_t = (
-        inv_upu_w_1_t_25*(axis_z_upu_axes2_in_base_x*upu_S_dot_x +
-            axis_z_upu_axes2_in_base_y*upu_S_dot_y + axis_z_upu_axes2_in_base_z*upu_S_dot_z -
-            upu_n_c_z*(upu_end_p1_r3_y*upu_omega_tip_x - upu_end_p1_r3_x*upu_omega_tip_y))
+        # (upu-qd_2) rate of joint 2
+        upu_qd_2 = (
+        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+            axis_y_upu_axes2_z*upu_S_dot_z)
         )
-        # (upu-a_p) acceleration of the connection point without its centripetal part
-        upu_a_p_x = t_ddot_x + alpha_y*upu_q_in_base_z - alpha_z*upu_q_in_base_y
-        upu_a_p_y = t_ddot_y + alpha_z*upu_q_in_base_x - alpha_x*upu_q_in_base_z
-        upu_a_p_z = t_ddot_z + alpha_x*upu_q_in_base_y - alpha_y*upu_q_in_base_x
-        # (upu-S_ddot) acceleration of the connection point
-        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_3 - omega_z*upu_S_dot_t_2
-        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t - omega_x*upu_S_dot_t_3
-        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_2 - omega_y*upu_S_dot_t
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_t = upu_qd_1_t*upu_s_2
-        upu_omega_1_t_2 = upu_c_2*upu_qd_1_t
-        # (upu-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        upu_zeta_2_x = upu_omega_1_t_2*upu_qd_3_t
-        upu_zeta_2_y = upu_omega_1_t*upu_qd_3_t
+        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
+        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
-        upu_W_2_t_2 = upu_omega_1_t*upu_omega_1_t
-        upu_W_2_t_3 = upu_omega_1_t_2*upu_omega_1_t_2
-        upu_W_2_xy = upu_omega_1_t*upu_omega_1_t_2
+        upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
+        upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
+        upu_W_2_in_axes2_xy = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
+        # (upu-a_p) acceleration of the connection point without its centripetal part
+        upu_a_p_x = t_ddot_x + alpha_y*upu_q_z - alpha_z*upu_q_y
+        upu_a_p_y = t_ddot_y + alpha_z*upu_q_x - alpha_x*upu_q_z
+        upu_a_p_z = t_ddot_z + alpha_x*upu_q_y - alpha_y*upu_q_x
+        # (upu-S_ddot) acceleration of the connection point
+        upu_S_ddot_x = upu_a_p_x + omega_y*upu_S_dot_t_5 - omega_z*upu_S_dot_t_4
+        upu_S_ddot_y = upu_a_p_y + omega_z*upu_S_dot_t_3 - omega_x*upu_S_dot_t_5
+        upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
         # (upu-bias) acceleration of the connection point at zero joint accelerations
-        upu_bias_t_3 = upu_bias_t*upu_omega_1_t_2
-        upu_bias_z = upu_bias_t_3 + 2.0*upu_root_2*upu_zeta_2_y
+        upu_bias_t = 2.0*upu_S_dot_in_axes2_x
+        upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2
         # (upu-rel) acceleration of the connection point left to the joint accelerations
-        upu_rel_z = (
-        axis_z_upu_axes2_in_base_x*upu_S_ddot_x + axis_z_upu_axes2_in_base_y*upu_S_ddot_y +
-            axis_z_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_z
+        upu_rel_in_axes2_z = (
+        axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
+            axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_nd_m1_x = (
-        upu_end_p1_r1_x*upu_omega_tip_x - upu_end_p1_r1_x*upu_omega_1_t -
-            upu_end_p1_r3_x*upu_omega_tip_z
+        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_omega_in_axes2_z = (
+        axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
-        upu_nd_m1_y = (
-        upu_end_p1_r1_x*upu_omega_1_t_2 + upu_end_p1_r1_x*upu_omega_tip_y -
-            upu_end_p1_r3_y*upu_omega_tip_z
+        upu_nd_m1_in_axes2_x = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_x - upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_x
+            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_z
+        )
+        upu_nd_m1_in_axes2_y = (
+        upu_end_p1_in_axes2_z*upu_omega_in_axes2_y - upu_end_p1_in_axes2_y*upu_omega_in_axes2_z -
+            upu_end_p1_in_axes2_z*upu_omega_1_in_axes2_y
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
-        upu_nu_1_t = upu_end_p1_r3_y*upu_zeta_2_x - upu_end_p1_r3_x*upu_zeta_2_y
+        upu_nu_1_t = (
+        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
+        )
         upu_nu_1_t_2 = (
-        upu_nd_m1_x*(upu_omega_1_t - upu_omega_tip_x) + (upu_omega_tip_z -
-            upu_qd_3_t)*(upu_end_p1_r3_y*upu_omega_1_t_2 - upu_end_p1_r3_x*upu_omega_1_t) -
-            upu_nd_m1_y*(upu_omega_1_t_2 + upu_omega_tip_y)
+        upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) +
+            (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
+            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y)
         )
         upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
-        upu_end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - upu_end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
+        upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - upu_n_m1_in_axes2_y*(alpha_x*axis_y_upu_axes2_x +
+            alpha_y*axis_y_upu_axes2_y + alpha_z*axis_y_upu_axes2_z)
         )
         upu_etad_1 = upu_nu_1 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1_t = (
-        axis_y_upu_axes2_in_base_x*upu_S_ddot_x + axis_y_upu_axes2_in_base_y*upu_S_ddot_y +
-            axis_y_upu_axes2_in_base_z*upu_S_ddot_z - upu_bias_t_2
-        )
-        upu_qdd_1_t_2 = inv_upu_root_2*upu_qdd_1_t
-        upu_qdd_1_t_3 = inv_upu_w_1_t_25*(upu_rel_z + upu_etad_1*upu_n_c_z)
+        upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t)
         # (upu-alpha_1) angular acceleration of link 1
-        upu_alpha_1_t = upu_qdd_1_t_3*upu_s_2
-        upu_alpha_1_t_2 = upu_c_2*upu_qdd_1_t_3
+        upu_alpha_1_in_axes2_x = upu_qdd_1*upu_s_2
+        upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1
         # (upu-alpha_2) angular acceleration of link 2
-        upu_alpha_2_x = upu_alpha_1_t - upu_zeta_2_x
-        upu_alpha_2_y = -upu_alpha_1_t_2 - upu_zeta_2_y
+        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x
+        upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2) acceleration tensor of link 2
-        upu_B_2_xy = -2.0*upu_W_2_xy - upu_qdd_1_t_2
-        upu_B_2_zx = upu_zeta_2_y - upu_alpha_2_y
-        upu_B_2_zy = upu_alpha_2_x - upu_zeta_2_x
+        upu_B_2_t = upu_bias_t*upu_qd_2
+        upu_B_2_t_2 = (
+        axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
+            axis_y_upu_axes2_z*upu_S_ddot_z - upu_B_2_t
+        )
+        upu_B_2_in_axes2_yx = inv_upu_root_2*upu_B_2_t_2
+        upu_B_2_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx
+        upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y
+        upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x
         # (upu-acc_3) acceleration of the reference point of link 3, less gravity
-        upu_acc_3_x = (
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t
+        upu_acc_3_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_t_4*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_t_3*upu_c_2 + upu_acc_3_t_4*upu_s_2
+        upu_acc_3_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
-            axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_r3_x
+            axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_in_axes2_x
         )
-        upu_acc_3_y = upu_bias_t_2 + upu_qdd_1_t - upu_g_r3_y
-        upu_acc_3_z = upu_bias_t_3 + upu_B_2_zx*upu_root_2 - upu_g_r1_x
+        upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y
+        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_root_2 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-f_3) inertia force of link 3 less its weight
-        upu_f_3_x = (
-        upu_acc_3_x*upu_link3_mass - upu_B_2_xy*upu_h_3_z - upu_alpha_1_t_2*upu_h_3_y -
-            upu_h_3_x*(upu_W_2_t + upu_W_2_t_3)
+        upu_f_3_t = upu_qd_2*upu_qd_2
+        upu_f_3_t_2 = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
+        upu_f_3_t_3 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
+        upu_f_3_in_axes2_x = (
+        upu_acc_3_in_axes2_x*upu_link3_mass + upu_alpha_1_in_axes2_y*upu_h_3_in_spec2_y -
+            upu_B_2_in_axes2_xy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_x*(upu_f_3_t + upu_f_3_t_3)
         )
-        upu_f_3_y = (
-        upu_acc_3_y*upu_link3_mass + upu_h_3_x*upu_qdd_1_t_2 + upu_h_3_z*(upu_W_2_t + upu_W_2_t_2)
-            - upu_alpha_1_t*upu_h_3_y
+        upu_f_3_in_axes2_y = (
+        upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_y*upu_link3_mass +
+            upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2) -
+            upu_alpha_1_in_axes2_x*upu_h_3_in_spec2_y
         )
-        upu_f_3_z = (
-        upu_B_2_zx*upu_h_3_x + upu_acc_3_z*upu_link3_mass - upu_B_2_zy*upu_h_3_z -
-            upu_h_3_y*(upu_W_2_t_2 + upu_W_2_t_3)
+        upu_f_3_in_axes2_z = (
+        upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass -
+            upu_B_2_in_axes2_zy*upu_h_3_in_spec2_z - upu_h_3_in_spec2_y*(upu_f_3_t_2 +
+            upu_f_3_t_3)
         )
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
-        upu_mu_2_x = (
-        upu_B_2_zy*upu_Sigma_2_yy + upu_J_group_2_xz*upu_qdd_1_t_2 + upu_Sigma_2_zz*upu_alpha_1_t
-            + upu_g_r1_x*upu_h_2_z + upu_g_r3_y*upu_h_2_y - upu_B_2_zx*upu_J_group_2_xy -
-            upu_J_group_2_yz*(upu_W_2_t - upu_W_2_t_3) - upu_acc_3_y*upu_h_3_y -
-            upu_acc_3_z*upu_h_3_z
+        upu_mu_2_in_axes2_x = (
+        upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
+            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
+            upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
+            upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
+            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
         )
-        upu_mu_2_y = (
-        upu_B_2_zy*upu_J_group_2_xy + upu_J_group_2_xz*(upu_W_2_t - upu_W_2_t_2) +
-            upu_acc_3_x*upu_h_3_y + upu_g_r1_x*upu_h_2_x - upu_B_2_xy*upu_J_group_2_yz -
-            upu_B_2_zx*upu_Sigma_2_xx - upu_Sigma_2_zz*upu_alpha_1_t_2 - upu_acc_3_z*upu_h_3_x -
-            upu_g_r3_x*upu_h_2_y
+        upu_mu_2_in_axes2_y = (
+        upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_f_3_t -
+            upu_f_3_t_2) + upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_x -
+            upu_B_2_in_axes2_xy*upu_J_group_2_in_axes2_yz -
+            upu_B_2_in_axes2_zx*upu_Sigma_2_in_axes2_xx - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_x
+            - upu_g_in_axes2_x*upu_h_2_in_spec2_y
         )
-        upu_mu_2_z = (
-        upu_J_group_2_xy*(upu_W_2_t_2 - upu_W_2_t_3) + upu_J_group_2_xz*upu_alpha_1_t +
-            upu_Sigma_2_xx*upu_qdd_1_t_2 + upu_acc_3_x*upu_h_3_z + upu_acc_3_y*upu_h_3_x -
-            upu_B_2_xy*upu_Sigma_2_yy - upu_J_group_2_yz*upu_alpha_1_t_2 - upu_g_r3_x*upu_h_2_z -
-            upu_g_r3_y*upu_h_2_x
+        upu_mu_2_in_axes2_z = (
+        upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 -
+            upu_f_3_t_3) + upu_J_group_2_in_axes2_xz*upu_alpha_1_in_axes2_x +
+            upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
+            upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
+            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
+            upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        upu_N_2_y = upu_mu_2_y - upu_f_3_z*upu_root_2
-        upu_N_2_r0_y = upu_mu_2_x*upu_s_2 - upu_N_2_y*upu_c_2
+        upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_root_2
+        upu_N_2_in_axes1_z = upu_N_2_in_axes2_y*upu_c_2 + upu_mu_2_in_axes2_x*upu_s_2
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_G_t = upu_f_3_y + inv_upu_root_2*upu_mu_2_z
-        upu_G_t_2 = inv_upu_w_1_t_25*upu_N_2_r0_y
-        upu_G_t_3 = inv_upu_w_1_t_25*upu_N_2_r0_y*upu_n_c_z
-        # (upu-c) leg force on the platform without actuation and without the mass at the connection point
-        upu_c_in_base_x = (
-        -axis_x_upu_axes2_x*upu_f_3_x - axis_y_upu_axes2_in_base_x*upu_G_t -
-            axis_z_upu_axes2_in_base_x*upu_G_t_2
-        )
-        upu_c_in_base_y = (
-        -axis_x_upu_axes2_y*upu_f_3_x - axis_y_upu_axes2_in_base_y*upu_G_t -
-            axis_z_upu_axes2_in_base_y*upu_G_t_2
-        )
-        upu_c_in_base_z = (
-        -axis_x_upu_axes2_z*upu_f_3_x - axis_y_upu_axes2_in_base_z*upu_G_t -
-            axis_z_upu_axes2_in_base_z*upu_G_t_2
-        )
+        upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_root_2*upu_mu_2_in_axes2_z
+        upu_G_in_axes2_z = upu_N_2_in_axes1_z*upu_w_1_in_axes2_z
+        # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+        upu_G_m1 = upu_N_2_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
         # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all freedoms
-        upu_G_m_x = upu_G_t_3*upu_end_p1_r3_y
-        upu_G_m_y = upu_G_t_3*upu_end_p1_r3_x
+        upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y
+        # (upu-c) leg force on the platform without actuation and without the mass at the connection point
+        upu_c_x = (
+        -axis_x_upu_axes2_x*upu_f_3_in_axes2_x - axis_y_upu_axes2_x*upu_G_in_axes2_y -
+            axis_z_upu_axes2_x*upu_G_in_axes2_z
+        )
+        upu_c_y = (
+        -axis_x_upu_axes2_y*upu_f_3_in_axes2_x - axis_y_upu_axes2_y*upu_G_in_axes2_y -
+            axis_z_upu_axes2_y*upu_G_in_axes2_z
+        )
+        upu_c_z = (
+        -axis_x_upu_axes2_z*upu_f_3_in_axes2_x - axis_y_upu_axes2_z*upu_G_in_axes2_y -
+            axis_z_upu_axes2_z*upu_G_in_axes2_z
+        )
         # (upu-c_m) moment of the leg on the platform without actuation
-        upu_c_m_in_base_x = axis_x_upu_axes2_x*upu_G_m_x - axis_y_upu_axes2_in_base_x*upu_G_m_y
-        upu_c_m_in_base_y = axis_x_upu_axes2_y*upu_G_m_x - axis_y_upu_axes2_in_base_y*upu_G_m_y
-        upu_c_m_in_base_z = axis_x_upu_axes2_z*upu_G_m_x - axis_y_upu_axes2_in_base_z*upu_G_m_y
+        upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y
+        upu_c_m_x = axis_x_upu_axes2_x*upu_c_m_in_axes2_x - axis_y_upu_axes2_x*upu_G_m_in_axes2_y
+        upu_c_m_y = axis_x_upu_axes2_y*upu_c_m_in_axes2_x - axis_y_upu_axes2_y*upu_G_m_in_axes2_y
+        upu_c_m_z = axis_x_upu_axes2_z*upu_c_m_in_axes2_x - axis_y_upu_axes2_z*upu_G_m_in_axes2_y
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
-        out_leg_force[_leg_force_upu[0][leg]] = upu_c_in_base_x
-        out_leg_force[_leg_force_upu[1][leg]] = upu_c_in_base_y
-        out_leg_force[_leg_force_upu[2][leg]] = upu_c_in_base_z
-        out_leg_force[_leg_force_upu[3][leg]] = upu_c_m_in_base_x
-        out_leg_force[_leg_force_upu[4][leg]] = upu_c_m_in_base_y
-        out_leg_force[_leg_force_upu[5][leg]] = upu_c_m_in_base_z
+        # (upu-c) leg force on the platform without actuation and without the mass at the connection point
+        out_leg_force[_leg_force_upu[0][leg]] = upu_c_x
+        out_leg_force[_leg_force_upu[1][leg]] = upu_c_y
+        out_leg_force[_leg_force_upu[2][leg]] = upu_c_z
+        # (upu-c_m) moment of the leg on the platform without actuation
+        out_leg_force[_leg_force_upu[3][leg]] = upu_c_m_x
+        out_leg_force[_leg_force_upu[4][leg]] = upu_c_m_y
+        out_leg_force[_leg_force_upu[5][leg]] = upu_c_m_z
+        # (upu-w_3) force part of reciprocal wrench 3
         out_drive[_drive_upu[0][leg]] = axis_x_upu_axes2_x
         out_drive[_drive_upu[1][leg]] = axis_x_upu_axes2_y
         out_drive[_drive_upu[2][leg]] = axis_x_upu_axes2_z
-        out_constraint_direction[_constraint_direction_upu[0][leg]] = -upu_n_c_t
-        out_constraint_direction[_constraint_direction_upu[1][leg]] = -upu_n_c_t_2
-        out_constraint_direction[_constraint_direction_upu[2][leg]] = -upu_n_c_t_3
-        out_constraint_direction[_constraint_direction_upu[3][leg]] = upu_n_m1_in_base_x
-        out_constraint_direction[_constraint_direction_upu[4][leg]] = upu_n_m1_in_base_y
-        out_constraint_direction[_constraint_direction_upu[5][leg]] = upu_n_m1_in_base_z
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        out_constraint_direction[_constraint_direction_upu[0][leg]] = -upu_n_c_t_2
+        out_constraint_direction[_constraint_direction_upu[1][leg]] = -upu_n_c_t_3
+        out_constraint_direction[_constraint_direction_upu[2][leg]] = -upu_n_c_t_4
+        # (upu-mu_c) moment that goes with it
+        out_constraint_direction[_constraint_direction_upu[3][leg]] = upu_n_m1_x
+        out_constraint_direction[_constraint_direction_upu[4][leg]] = upu_n_m1_y
+        out_constraint_direction[_constraint_direction_upu[5][leg]] = upu_n_m1_z
     return ok, (out_leg_force, out_drive, out_constraint_direction,)
 
 
@@ -5186,7 +5325,10 @@ def _run_legs(m, X, V, A):
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
-    gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, platform_mass = shared
+    (
+    gravity_x, gravity_y, gravity_z, h_star_in_platform_x, h_star_in_platform_y,
+        h_star_in_platform_z, platform_mass,
+    ) = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -5226,20 +5368,22 @@ def _run_potential(m, X):
     out_potential = m.zeros("potential")
     # (potential) potential energy
     potential_t = (
-    gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z + platform_mass*t_x) +
-        gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + platform_mass*t_y) +
-        gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + platform_mass*t_z)
+    gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y + R_xz*h_star_in_platform_z +
+        platform_mass*t_x) + gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
+        R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z)
     )
     sums = [0.0] * 1
     for leg, k in legs[0]:
         (
-        upu_b_r0_x, upu_b_r0_y, upu_b_r0_z, upu_base_frame_xx, upu_base_frame_xy,
+        upu_acc_3_t, upu_acc_3_t_2, upu_acc_3_t_3, upu_base_frame_xx, upu_base_frame_xy,
             upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
             upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-            upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_g_r0_x,
-            upu_g_r0_y, upu_g_r0_z, upu_h_2_x, upu_h_2_y, upu_h_2_z, upu_h_3_x, upu_h_3_y,
-            upu_h_3_z, upu_link2_mass, upu_link3_mass, upu_platform_point_x, upu_platform_point_y,
-            upu_platform_point_z,
+            upu_base_point_y, upu_base_point_z, upu_branch_1, upu_branch_2, upu_h_2_in_spec2_x,
+            upu_h_2_in_spec2_y, upu_h_2_in_spec2_z, upu_h_3_in_spec2_x, upu_h_3_in_spec2_y,
+            upu_h_3_in_spec2_z, upu_link2_mass, upu_link3_mass, upu_platform_point_x,
+            upu_platform_point_y, upu_platform_point_z, upu_potential_t, upu_potential_t_2,
+            upu_potential_t_3,
         ) = k
         # (upu-S) from the base point to the connection point
         upu_S_x = (
@@ -5266,49 +5410,51 @@ def _run_potential(m, X):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_g_r1_y = -upu_c_1*upu_g_r0_y - upu_g_r0_x*upu_s_1
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
         # (potential) potential energy
-        upu_b_r1_x = upu_b_r0_y*upu_s_1 - upu_b_r0_x*upu_c_1
-        upu_b_r1_y = -upu_b_r0_x*upu_s_1 - upu_b_r0_y*upu_c_1
-        upu_b_r3_x = upu_b_r0_z*upu_s_2 - upu_b_r1_y*upu_c_2
-        upu_b_r3_y = -upu_b_r0_z*upu_c_2 - upu_b_r1_y*upu_s_2
-        upu_potential_t = (
-        (upu_g_r0_y*upu_s_1 - upu_c_1*upu_g_r0_x)*(upu_h_2_y + upu_h_3_y +
-            upu_b_r1_x*upu_link2_mass + upu_b_r1_x*upu_link3_mass) + (upu_g_r0_z*upu_s_2 -
-            upu_c_2*upu_g_r1_y)*(upu_h_2_x + upu_h_3_x + upu_b_r3_x*upu_link2_mass +
-            upu_link3_mass*(upu_b_r3_x + upu_root_2)) - (-upu_c_2*upu_g_r0_z -
-            upu_g_r1_y*upu_s_2)*(upu_h_2_z + upu_h_3_z - upu_b_r3_y*upu_link2_mass -
-            upu_b_r3_y*upu_link3_mass)
+        upu_potential_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
+        upu_b_in_spec2_y = upu_potential_t_2*upu_s_1 - upu_c_1_t*upu_potential_t
+        upu_potential_t_5 = -upu_c_1_t*upu_potential_t_2 - upu_potential_t*upu_s_1
+        upu_b_in_spec2_x = upu_c_2*upu_potential_t_5 + upu_potential_t_3*upu_s_2
+        upu_b_in_spec2_z = upu_potential_t_5*upu_s_2 - upu_c_2*upu_potential_t_3
+        upu_potential_t_6 = (
+        (upu_acc_3_t_3*upu_c_2 + upu_potential_t_4*upu_s_2)*(upu_h_2_in_spec2_z +
+            upu_h_3_in_spec2_z + upu_b_in_spec2_z*upu_link2_mass +
+            upu_b_in_spec2_z*upu_link3_mass) - (upu_acc_3_t_2*upu_s_1 -
+            upu_acc_3_t*upu_c_1_t)*(upu_h_2_in_spec2_y + upu_h_3_in_spec2_y +
+            upu_b_in_spec2_y*upu_link2_mass + upu_b_in_spec2_y*upu_link3_mass) -
+            (upu_acc_3_t_3*upu_s_2 - upu_c_2*upu_potential_t_4)*(upu_h_2_in_spec2_x +
+            upu_h_3_in_spec2_x + upu_b_in_spec2_x*upu_link2_mass +
+            upu_link3_mass*(upu_b_in_spec2_x + upu_root_2))
         )
         ok = (
         ok & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001))
         )
         sums = m.added(sums, leg, (
-        upu_potential_t,
+        upu_potential_t_6,
         ))
-    total_upu, = sums
+    potential_upu, = sums
     # (potential) potential energy
-    potential = -potential_t - total_upu
+    potential = potential_upu - potential_t
+    # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
 
@@ -5318,7 +5464,7 @@ def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
     shared, legs = m.constants("condition")
-    b_c_x, b_c_y, b_c_z, legs_size, spread_t = shared
+    b_c_in_platform_x, b_c_in_platform_y, b_c_in_platform_z, legs_size, spread_t = shared
     X_0 = X[0]
     X_1 = X[1]
     X_2 = X[2]
@@ -5362,6 +5508,7 @@ def _run_condition(m, X):
     out_lengths = m.zeros("lengths")
     out_pivots = m.zeros("pivots")
     out_reach = m.zeros("reach")
+    # (legs_size) rms size of the legs, taken where the platform points coincide
     out_lengths[1] = legs_size
     sums = [0.0] * 1
     for leg, k in legs[0]:
@@ -5374,18 +5521,18 @@ def _run_condition(m, X):
             upu_platform_point_z,
         ) = k
         # (upu-S) from the base point to the connection point
-        upu_q_in_base_x = (
+        upu_q_x = (
         R_xx*upu_platform_point_x + R_xy*upu_platform_point_y + R_xz*upu_platform_point_z
         )
-        upu_q_in_base_y = (
+        upu_q_y = (
         R_yx*upu_platform_point_x + R_yy*upu_platform_point_y + R_yz*upu_platform_point_z
         )
-        upu_q_in_base_z = (
+        upu_q_z = (
         R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z
         )
-        upu_S_x = t_x + upu_q_in_base_x - upu_base_point_x
-        upu_S_y = t_y + upu_q_in_base_y - upu_base_point_y
-        upu_S_z = t_z + upu_q_in_base_z - upu_base_point_z
+        upu_S_x = t_x + upu_q_x - upu_base_point_x
+        upu_S_y = t_y + upu_q_y - upu_base_point_y
+        upu_S_z = t_z + upu_q_z - upu_base_point_z
         # (upu-px_1) component along the reference direction
         upu_px_1 = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
@@ -5398,151 +5545,142 @@ def _run_condition(m, X):
         upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
         # (upu-root_1) amplitude, with the sign of the branch
         upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1_t = inv_upu_root_1*upu_py_1
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_px_1
         # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_t = (
+        upu_xi_1_in_axes1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
         # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_t*upu_xi_1_t
+        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
         # (upu-root_2) amplitude, with the sign of the branch
         upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
         inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = inv_upu_root_2*upu_root_1
+        upu_c_2 = -inv_upu_root_2*upu_root_1
         # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_t
+        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r0_x = (
+        upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
             R_yy*upu_base_frame_yx + R_zy*upu_base_frame_zx) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx + R_yz*upu_base_frame_yx +
             R_zz*upu_base_frame_zx)
         )
-        upu_end_p1_r0_y = (
+        upu_n_m1_t_2 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy + R_yx*upu_base_frame_yy +
             R_zx*upu_base_frame_zy) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy +
             R_yy*upu_base_frame_yy + R_zy*upu_base_frame_zy) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        upu_end_p1_r0_z = (
+        upu_n_m1_t_3 = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
             R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
             R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1 = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_end_p1_r1_y = -upu_c_1*upu_end_p1_r0_y - upu_end_p1_r0_x*upu_s_1
-        upu_end_p1_r3_x = upu_end_p1_r0_z*upu_s_2 - upu_c_2*upu_end_p1_r1_y
-        upu_end_p1_r3_y = -upu_c_2*upu_end_p1_r0_z - upu_end_p1_r1_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
+        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
+        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
         # (upu-volume_c) triple product of the velocity vectors
         upu_volume_c_t = upu_root_1*upu_root_2
-        # (upu-n_m1) direction 1 of the moment that the platform joint transmits
-        upu_n_m1_r0_y = -upu_c_2*upu_end_p1_r3_x - upu_end_p1_r3_y*upu_s_2
         # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_z = upu_n_m1_r0_y*upu_root_2/upu_volume_c_t
+        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
+        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
+        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
+        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        axis_z_upu_axes2_in_base_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1
-        axis_z_upu_axes2_in_base_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1
-        axis_z_upu_axes2_in_base_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1
-        upu_w_1_t = upu_s_1*upu_s_2
-        upu_w_1_t_2 = upu_c_1*upu_s_2
-        axis_y_upu_axes2_in_base_x = (
-        upu_base_frame_xx*upu_w_1_t + upu_base_frame_xy*upu_w_1_t_2 - upu_base_frame_xz*upu_c_2
+        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        # (upu-w_3) force part of reciprocal wrench 3
+        upu_w_3_t = upu_s_1*upu_s_2
+        upu_w_3_t_2 = upu_c_1_t*upu_s_2
+        axis_y_upu_axes2_x = (
+        upu_base_frame_xx*upu_w_3_t + upu_base_frame_xy*upu_w_3_t_2 + upu_base_frame_xz*upu_c_2
         )
-        axis_y_upu_axes2_in_base_y = (
-        upu_base_frame_yx*upu_w_1_t + upu_base_frame_yy*upu_w_1_t_2 - upu_base_frame_yz*upu_c_2
+        axis_y_upu_axes2_y = (
+        upu_base_frame_yx*upu_w_3_t + upu_base_frame_yy*upu_w_3_t_2 + upu_base_frame_yz*upu_c_2
         )
-        axis_y_upu_axes2_in_base_z = (
-        upu_base_frame_zx*upu_w_1_t + upu_base_frame_zy*upu_w_1_t_2 - upu_base_frame_zz*upu_c_2
+        axis_y_upu_axes2_z = (
+        upu_base_frame_zx*upu_w_3_t + upu_base_frame_zy*upu_w_3_t_2 + upu_base_frame_zz*upu_c_2
         )
-        axis_x_upu_axes2_x = (
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
-        )
-        axis_x_upu_axes2_y = (
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
-        )
-        axis_x_upu_axes2_z = (
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
-        )
-        upu_w_1_t_3 = upu_root_1 + upu_n_c_z*upu_n_m1_r0_y
-        # (upu-H_a_3) moment of the column's unit force about the platform origin
-        upu_H_a_3_t = axis_x_upu_axes2_z*upu_q_in_base_y - axis_x_upu_axes2_y*upu_q_in_base_z
-        upu_H_a_3_t_2 = axis_x_upu_axes2_x*upu_q_in_base_z - axis_x_upu_axes2_z*upu_q_in_base_x
-        upu_H_a_3_t_3 = axis_x_upu_axes2_y*upu_q_in_base_x - axis_x_upu_axes2_x*upu_q_in_base_y
-        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-        upu_n_c_t = axis_z_upu_axes2_in_base_x*upu_n_c_z
-        upu_n_c_t_2 = axis_z_upu_axes2_in_base_y*upu_n_c_z
-        upu_n_c_t_3 = axis_z_upu_axes2_in_base_z*upu_n_c_z
-        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
-        upu_Hk_a_1_x = (
-        axis_y_upu_axes2_in_base_x*upu_end_p1_r3_x + upu_n_c_t_2*upu_q_in_base_z -
-            axis_x_upu_axes2_x*upu_end_p1_r3_y - upu_n_c_t_3*upu_q_in_base_y
-        )
-        upu_Hk_a_1_y = (
-        axis_y_upu_axes2_in_base_y*upu_end_p1_r3_x + upu_n_c_t_3*upu_q_in_base_x -
-            axis_x_upu_axes2_y*upu_end_p1_r3_y - upu_n_c_t*upu_q_in_base_z
-        )
-        upu_Hk_a_1_z = (
-        axis_y_upu_axes2_in_base_z*upu_end_p1_r3_x + upu_n_c_t*upu_q_in_base_y -
-            axis_x_upu_axes2_z*upu_end_p1_r3_y - upu_n_c_t_2*upu_q_in_base_x
-        )
-        # (spread) rms distance of the platform points from their centroid
-        upu_spread_t = b_c_x - upu_platform_point_x
-        upu_spread_t_2 = b_c_y - upu_platform_point_y
-        upu_spread_t_3 = b_c_z - upu_platform_point_z
-        upu_spread_t_4 = (
-        upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 + upu_spread_t_3*upu_spread_t_3
-        )
-        # (upu-rho2_1) squared amplitude
-        upu_pivot_size = abs(upu_rho2_1)
-        # (upu-rho2_2) squared amplitude
-        upu_pivot_size_2 = abs(upu_rho2_2)
-        # (upu-volume_c) triple product of the velocity vectors
-        upu_pivot_size_3 = abs(upu_volume_c_t)
-        # (upu-w_1) force part of reciprocal wrench 1
-        upu_pivot_size_4 = abs(upu_root_2)
-        upu_pivot_size_5 = abs(upu_w_1_t_3)
+        upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
+        upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
+        upu_w_3_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
+        upu_pivot_size = abs(upu_rho2_1)
+        upu_pivot_size_2 = abs(upu_rho2_2)
+        upu_pivot_size_3 = abs(upu_volume_c_t)
+        upu_pivot_size_4 = abs(upu_root_2)
+        upu_pivot_size_5 = abs(upu_w_1_t)
         upu_least_pivots = (
         least(least(least(least(1.25*sqrt(upu_pivot_size), 1.25*sqrt(upu_pivot_size_2)),
             1.5624999999999998*upu_pivot_size_3), 1.25*upu_pivot_size_4), 1.25*upu_pivot_size_5)
         )
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        upu_H_a_3_x = upu_q_y*upu_w_3_z - upu_q_z*upu_w_3_y
+        upu_H_a_3_y = upu_q_z*upu_w_3_x - upu_q_x*upu_w_3_z
+        upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
+        upu_Hk_a_1_x = (
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
+            upu_end_p1_in_axes2_y*upu_w_3_x - upu_n_c_t_4*upu_q_y
+        )
+        upu_Hk_a_1_y = (
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
+            upu_end_p1_in_axes2_y*upu_w_3_y - upu_n_c_t_2*upu_q_z
+        )
+        upu_Hk_a_1_z = (
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
+            upu_end_p1_in_axes2_y*upu_w_3_z - upu_n_c_t_3*upu_q_x
+        )
+        # (spread) rms distance of the platform points from their centroid
+        upu_spread_t = b_c_in_platform_x - upu_platform_point_x
+        upu_spread_t_2 = b_c_in_platform_y - upu_platform_point_y
+        upu_spread_t_3 = b_c_in_platform_z - upu_platform_point_z
+        upu_spread_t_4 = (
+        upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 + upu_spread_t_3*upu_spread_t_3
+        )
         clear = (
         clear & m.every(leg, (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
             (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(-upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t_3) > _TOLERANCE * 0.8))
+            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
+            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8))
         )
         sums = m.added(sums, leg, (
         upu_spread_t_4,
         ))
-        out_H[_H_upu[0][leg]] = axis_x_upu_axes2_x
-        out_H[_H_upu[1][leg]] = axis_x_upu_axes2_y
-        out_H[_H_upu[2][leg]] = axis_x_upu_axes2_z
-        out_H[_H_upu[3][leg]] = upu_H_a_3_t
-        out_H[_H_upu[4][leg]] = upu_H_a_3_t_2
-        out_H[_H_upu[5][leg]] = upu_H_a_3_t_3
-        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t
-        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_2
-        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_3
+        # (upu-w_3) force part of reciprocal wrench 3
+        out_H[_H_upu[0][leg]] = upu_w_3_x
+        out_H[_H_upu[1][leg]] = upu_w_3_y
+        out_H[_H_upu[2][leg]] = upu_w_3_z
+        # (upu-H_a_3) moment of the column's unit force about the platform origin
+        out_H[_H_upu[3][leg]] = upu_H_a_3_x
+        out_H[_H_upu[4][leg]] = upu_H_a_3_y
+        out_H[_H_upu[5][leg]] = upu_H_a_3_z
+        # (upu-n_c) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
+        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
+        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
+        # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
         out_Hk[_Hk_upu[5][leg]] = upu_Hk_a_1_z
+        # (upu-G) force at the connection point that balances the leg's inertia and weight along all freedoms
         out_pivots[_pivots_upu[0][leg]] = upu_least_pivots
-    total_upu, = sums
+    spread_upu, = sums
     # (spread) rms distance of the platform points from their centroid
-    spread = spread_t*sqrt(total_upu)
+    spread = spread_t*sqrt(spread_upu)
+    # (spread) rms distance of the platform points from their centroid
     out_lengths[0] = spread
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 

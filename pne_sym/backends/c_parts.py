@@ -8,7 +8,7 @@ the sums over the legs, sums[n*w + k]; what a leg gives, terms[n*count + k] and 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import sympy as sp
@@ -55,15 +55,29 @@ def statements(
         printer: of expressions.
         loads: where the names stand that are not yet at hand; those that are read are taken out.
     """
+    waiting = {} if loads is None else loads
+    rows = (
+        (
+            a.equation,
+            [
+                *loaded(waiting, a.expr),
+                *statement(f"const real {c_name(str(a.target))} = {printer.text(a.expr)}"),
+            ],
+        )
+        for a in assignments
+    )
+    return headed(rows, titles)
+
+
+def headed(rows: Iterable[tuple[str, list[str]]], titles: dict[str, str]) -> list[str]:
+    """Lines with the equations they belong to, under these."""
     lines: list[str] = []
-    equation = ""
-    for a in assignments:
-        if a.equation != equation:
-            equation = a.equation
-            title = titles.get(equation, "")
+    known = ""
+    for equation, own in rows:
+        if equation != known:
+            known, title = equation, titles.get(equation, "")
             lines += comment(f"({equation}) {title}" if title else f"{equation}: named entries")
-        lines += loaded(loads or {}, a.expr)
-        lines += statement(f"const real {c_name(str(a.target))} = {printer.text(a.expr)}")
+        lines += own
     return lines
 
 
@@ -150,11 +164,13 @@ class Parts:
         self, block: Block | None, checks: Iterable[Check], loads: dict[str, str]
     ) -> list[str]:
         """Entries of the output arrays, and flags."""
-        lines = []
+        rows = []
         for store in block.stores if block else ():
             place = flat_places(store, self.columns(store.array), 1)[0]
-            lines += loaded(loads, store.value)
-            lines += statement(f"{store.array}[{place}*w + k] = {self.printer.text(store.value)}")
+            value = self.printer.text(store.value)
+            text = statement(f"{store.array}[{place}*w + k] = {value}")
+            rows.append((store.equation, [*loaded(loads, store.value), *text]))
+        lines = headed(rows, self.titles)
         if self.summed and block and block.stores:
             lines += statement(f"t->total[k] += {self._summed(block)}")
         return lines + self._flags(checks, "t->{}[k] +=", loads)
@@ -177,13 +193,7 @@ class Parts:
         inputs = [i for i in self.f.leg_inputs.get(leg, ()) if i.symbol.name in reads]
         loads |= {i.symbol.name: self._leg_input(i, leg, tables) for i in inputs}
         lines = statements(block.assignments, self.titles, self.printer, loads)
-        for n, (target, value) in enumerate(block.sums):
-            term, place = self.printer.text(value), f"terms[{n}*count + k]"
-            lines += loaded(loads, value)
-            lines.append(f"{place} = add ? {place} + {term} : {term};  /* {target} */")
-        for n, store in enumerate(block.stores):
-            lines += loaded(loads, store.value)
-            lines += statement(f"o[{n}*count + k] = {self.printer.text(store.value)}")
+        lines += headed(self._of_leg(block, loads), self.titles)
         rows = {f: f"o[{n}*count + k] =" for f, n in self.flag_rows(block).items()}
         if "total" in rows:
             lines += statement(f"{rows['total']} {self._summed(block)}")
@@ -205,6 +215,16 @@ class Parts:
             "real *o",
         ]
         return Routine.of(f"{self.name}_legs_{leg}", parameters, [*tables, *_loop("count", lines)])
+
+    def _of_leg(self, block: Block, loads: dict[str, str]) -> Iterator[tuple[str, list[str]]]:
+        """What a leg adds to the sums, and its entries, with their equations."""
+        for n, (target, value) in enumerate(block.sums):
+            term, place = self.printer.text(value), f"terms[{n}*count + k]"
+            text = f"{place} = add ? {place} + {term} : {term};  /* {target} */"
+            yield block.sum_equations[n], [*loaded(loads, value), text]
+        for n, store in enumerate(block.stores):
+            entry = statement(f"o[{n}*count + k] = {self.printer.text(store.value)}")
+            yield store.equation, [*loaded(loads, store.value), *entry]
 
     def _leg_input(self, item: LegInput, leg: str, tables: list[str]) -> str:
         places = item.indices

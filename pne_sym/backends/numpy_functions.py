@@ -112,10 +112,12 @@ class FunctionText:
 
     def _once(self, block: Block) -> list[str]:
         lines = self.outside.statements(block.assignments) + self._required(block.checks, "{}")
+        rows = []
         for store in block.stores:
             (place,) = flat_places(store, self._columns(store.array))
-            lines += self.outside.assign(f"out_{store.array}[{place}]", self._of(store.value))
-        return lines
+            text = self.outside.assign(f"out_{store.array}[{place}]", self._of(store.value))
+            rows.append((store.equation, text))
+        return lines + self.outside.headed(rows)
 
     def _loop(self, block: Block, number: int) -> list[str]:
         """Statements of the legs of a type."""
@@ -130,10 +132,12 @@ class FunctionText:
             values = [self._of(value) for _, value in block.sums]
             lines.append("sums = m.added(sums, leg, (")
             lines += [*wrap("    " + self._tuple(values)[1:-1], WIDTH - 12, "    "), "))"]
+        rows = []
         for store in block.stores:
             table = flat_places(store, self._columns(store.array), self.bundle.leg_counts[leg])
             target = f"out_{store.array}[{self.places.named(store.array, leg, table)}[leg]]"
-            lines += text.assign(target, self._of(store.value))
+            rows.append((store.equation, text.assign(target, self._of(store.value))))
+        lines += text.headed(rows)
         head = [f"sums = [0.0] * {len(block.sums)}"] if block.sums else []
         head.append(f"for leg, k in legs[{number}]:")
         targets = self.outside.names([str(target) for target, _ in block.sums], "sums")

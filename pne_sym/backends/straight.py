@@ -87,15 +87,20 @@ class StraightText:
 
     def statements(self, assignments: Iterable[Assignment]) -> list[str]:
         """Assignments, headed by the equations they belong to."""
+        return self.headed(
+            (a.equation, self.assign(self.of(a.target), self.of(a.expr))) for a in assignments
+        )
+
+    def headed(self, rows: Iterable[tuple[str, list[str]]]) -> list[str]:
+        """Lines with the equations they belong to, under these."""
         lines: list[str] = []
-        equation = ""
-        for assignment in assignments:
-            if assignment.equation != equation:
-                equation = assignment.equation
-                title = self.titles.get(equation, "")
+        known = ""
+        for equation, own in rows:
+            if equation != known:
+                known, title = equation, self.titles.get(equation, "")
                 told = f"({equation}) {title}" if title else f"{equation}: named entries"
                 lines.append(f"{self.comment} {told}")
-            lines += self.assign(self.of(assignment.target), self.of(assignment.expr))
+            lines += own
         return lines
 
     # ---- functions -------------------------------------------------------------------------------
@@ -150,11 +155,12 @@ class StraightText:
 
     def _block(self, block: Block) -> list[str]:
         lines = self.statements(block.assignments) + self._required(block.checks)
-        for target, value in block.sums:
+        rows = []
+        for (target, value), equation in zip(block.sums, block.sum_equations, strict=True):
             legs = self.bundle.leg_counts[block.leg_type]
             total = self.forms.total.format(value=self.of(value), legs=legs)
-            lines += self.assign(self.of(target), total)
-        return lines
+            rows.append((equation, self.assign(self.of(target), total)))
+        return lines + self.headed(rows)
 
     def _required(self, checks: Iterable[Check]) -> list[str]:
         """What guards demand, each once."""
@@ -171,11 +177,12 @@ class StraightText:
 
     def _stores(self, block: Block) -> list[str]:
         """Entries of output arrays, which are flat, column by column."""
-        lines, legs = [], self.bundle.leg_counts.get(block.leg_type, 1)
+        rows, legs = [], self.bundle.leg_counts.get(block.leg_type, 1)
         form = self.forms.leg_store if block.leg_type else self.forms.store
         for store in block.stores:
             height = self.bundle.program.shapes[store.array][0]
             flat = places((r + height * c for r, c in places_of(store, legs)), self.forms.first)
             value = self.of(store.value)
-            lines.append(form.format(array=store.array, places=flat, value=value, legs=legs))
-        return lines
+            line = form.format(array=store.array, places=flat, value=value, legs=legs)
+            rows.append((store.equation, [line]))
+        return self.headed(rows)

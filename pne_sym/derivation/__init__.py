@@ -19,6 +19,7 @@ from pne_sym.derivation.equation import (
     Role,
     Trouble,
     full_name,
+    leg_sums,
     names_in,
 )
 from pne_sym.derivation.frames import BodyAxes, BodyFrame, rotations_by_place
@@ -56,6 +57,7 @@ __all__ = [
     "Rule",
     "Trouble",
     "full_name",
+    "leg_sums",
     "names_in",
     "rotations_by_place",
 ]

@@ -511,8 +511,8 @@ def full_name(derivation: Derivation, name: str) -> str:
     return found.pop() if len(found) == 1 else name
 
 
-def has_leg_sum(expr: Any) -> bool:
-    """Whether an expression sums over legs."""
+def leg_sums(expr: Any) -> list[Any]:
+    """The sums over legs in an expression."""
     if isinstance(expr, LegSum | VectorLegSum | TensorLegSum):
-        return True
-    return any(has_leg_sum(arg) for arg in getattr(expr, "args", ()))
+        return [expr]
+    return [found for arg in getattr(expr, "args", ()) for found in leg_sums(arg)]

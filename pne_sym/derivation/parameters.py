@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -126,10 +128,16 @@ class ParameterTable:
             symbols.append(symbol)
         return tuple(symbols)
 
-    def values(self) -> dict[str, NDArray[np.float64]]:
-        """Default of every entry by name, and the signs of the branches: a number, or (legs,)."""
+    def values(self, given: Mapping[str, Any] | None = None) -> dict[str, NDArray[np.float64]]:
+        """Every entry by name, and the signs of the branches: a number, or (legs,).
+
+        Args:
+            given: the parameters by name; None for their defaults.
+        """
         found: dict[str, NDArray[np.float64]] = {
-            name: np.asarray(of.default, dtype=float).reshape(-1, of.size)[:, index]
+            name: np.asarray(of.default if given is None else given[of.name], dtype=float).reshape(
+                -1, of.size
+            )[:, index]
             for name, (of, index) in self.entries.items()
         }
         found = {n: v if self.entries[n][0].leg_type else v[0] for n, v in found.items()}

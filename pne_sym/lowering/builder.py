@@ -7,8 +7,8 @@ parameters alone is told apart by its stage.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -18,6 +18,15 @@ from pne_sym.lowering.algebra import operations, terms_of
 from pne_sym.program.ir import Stage
 
 Atom = Any  # sympy Symbol, -Symbol or Number
+
+
+def of_leg(stem: str, stage: Stage) -> str:
+    """The stem of a name, with the leg type where a leg has its own value.
+
+    So that no number in a name counts values of other leg types.
+    """
+    of = stage.leg_type
+    return stem if not of or f"_{of}_" in f"_{stem}_" else f"{of}_{stem}"
 
 
 @dataclass(frozen=True)
@@ -47,6 +56,13 @@ class Guard:
     power: int
     stage: Stage
     equation: str
+
+    def rewritten(self, changes: Mapping[Any, Any]) -> Guard:
+        """With other expressions for its values; of a tested pivot the sign says nothing."""
+        value, scale = (sp.sympify(e).xreplace(changes) for e in (self.value, self.scale))
+        if self.trouble == "singular":
+            value = algebra.signed(value)[1]
+        return replace(self, value=value, scale=scale)
 
 
 @dataclass(frozen=True)
@@ -115,12 +131,8 @@ class Builder:
         return name
 
     def _stem(self, hint: str, stage: Stage) -> str:
-        """What a name begins with: of what a leg has its own, with the leg type.
-
-        So that no number in a name counts values of other leg types.
-        """
-        stem, of = hint or f"{self.quantity_of.get(self.equation, 'v')}_t", stage.leg_type
-        return stem if not of or f"_{of}_" in f"_{stem}_" else f"{of}_{stem}"
+        """What a name begins with."""
+        return of_leg(hint or f"{self.quantity_of.get(self.equation, 'v')}_t", stage)
 
     # ---- values ----------------------------------------------------------------------
 
@@ -382,6 +394,17 @@ class Builder:
         for hint, before, after in forgotten.issues:
             self._issues.append((hint, before))
             self._issued[hint] = after
+
+    def rewrite(self, expressions: Mapping[Any, Any], changes: Mapping[Any, Any]) -> None:
+        """Other expressions for the same values, or for their negatives.
+
+        Args:
+            expressions: of every statement's target.
+            changes: what stands for the values in guards; of tested pivots the sign says nothing.
+        """
+        self.statements = [replace(s, expr=expressions[s.target]) for s in self.statements]
+        self.of = {s.target: s for s in self.statements}
+        self.guards = [guard.rewritten(changes) for guard in self.guards]
 
     def cost(self, atoms: Iterable[Atom]) -> int:
         """Run-time operations needed for the atoms beyond what is live already."""

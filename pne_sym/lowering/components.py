@@ -8,18 +8,19 @@ of an equation the cheapest is taken.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Derivation, Equation, ReciprocalBasis, names_in
+from pne_sym.derivation import Derivation, Equation, ReciprocalBasis, leg_sums, names_in
 from pne_sym.lowering.bases import Bases
 from pne_sym.lowering.builder import Atom, Builder
 from pne_sym.lowering.frames import Frames, Triple
 from pne_sym.lowering.rotation import XYZ, Rotation, Tensor9, cross, symmetrised
 from pne_sym.lowering.trials import NotYetError, Trials, atoms
+from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n
 
 
@@ -42,10 +43,47 @@ class Lowering:
         self._vectors: dict[tuple[str, str], Triple] = {}
         self._tensors: dict[tuple[str, str], Tensor9] = {}
         self._scalars: dict[str, Atom] = {}
+        self._totals: dict[Component, Atom] = {}  # sums over legs, by what they are
         self._in_progress: set[str] = set()
         frames = Frames(derivation, builder, self.vector, self.scalar, self.trials.store)
         self.rotation = Rotation(builder, frames, self.trials, self._vectors, self.definition)
         self.bases = Bases(derivation, builder, self.trials, self.vector, self.scalar, self.ensure)
+
+    # ---- what was made -----------------------------------------------------------------
+
+    def components(self) -> Iterator[tuple[Component, Atom]]:
+        """All components that were made, of quantities, sums over legs and axes of frames."""
+        for name, atom in self._scalars.items():
+            yield Component(name), atom
+        for (name, frame), v in self._vectors.items():
+            yield from ((Component(name, frame, (i,)), v[i]) for i in range(3))
+        for (name, frame), t in self._tensors.items():
+            places = ((i, j) for i in range(3) for j in range(3))
+            yield from ((Component(name, frame, (i, j)), t[i][j]) for i, j in places)
+        yield from self._totals.items()
+        yield from self.rotation.components()
+
+    def made(self) -> dict[str, tuple[str, tuple[Atom, ...]]]:
+        """Frame and components of every quantity, where it was made first."""
+        found = {name: ("", (atom,)) for name, atom in self._scalars.items()}
+        for name, frame in self.home.items():
+            value = self._vectors.get((name, frame)) or self._tensors.get((name, frame))
+            if value is not None:
+                found[name] = (frame, tuple(atoms(value)))
+        return found
+
+    def _note_total(self, expr: Any, frame: str, value: Any) -> None:
+        """Note what the sum of an equation over the legs of a type is, where it is the only one."""
+        name, leg_type = self.b.quantity_of.get(self.b.equation, ""), expr.args[1]
+        same = [
+            s for s in leg_sums(self.definition[name].rhs if name else 0) if s.args[1] == leg_type
+        ]
+        if same != [expr]:
+            return
+        for k, atom in enumerate(atoms(value)):
+            index = {"": (), 3: (k,), 9: (k // 3, k % 3)}[frame and len(atoms(value))]
+            of = Component(name, frame, index, over=leg_type.name)
+            self.trials.store(self._totals, of, atom)
 
     # ---- named quantities --------------------------------------------------------------
 
@@ -302,10 +340,12 @@ class Lowering:
     def _vector_total(self, expr: Any, frame: str, hint: str) -> Triple:
         value, leg_type = expr.args
         v = self.vector(value, frame, f"{hint}_leg" if hint else "")
-        return tuple(
+        found = tuple(
             self.b.total(c, leg_type.name, f"{hint or 'total'}_{leg_type.name}_{XYZ[i]}")
             for i, c in enumerate(v)
         )
+        self._note_total(expr, frame, found)
+        return found
 
     def _combination(self, basis: ReciprocalBasis, weights: Sequence[Any], frame: str) -> Triple:
         """Force part of sum g_j (w_j; m_j)."""
@@ -424,7 +464,9 @@ class Lowering:
         value, leg_type = expr.args
         t = self.tensor(value, frame)
         stem = f"{hint or 'total'}_{leg_type.name}"
-        return self._entries(lambda i, j: self.b.total(t[i][j], leg_type.name, _entry(stem, i, j)))
+        found = self._entries(lambda i, j: self.b.total(t[i][j], leg_type.name, _entry(stem, i, j)))
+        self._note_total(expr, frame, found)
+        return found
 
     # ---- scalars -------------------------------------------------------------------------
 
@@ -440,9 +482,10 @@ class Lowering:
             return self._moment_part(expr)
         if isinstance(expr, n.LegSum):
             value, leg_type = expr.args
-            return self.b.total(
-                self.scalar(value), leg_type.name, f"{hint or 'total'}_{leg_type.name}"
-            )
+            stem = f"{hint or 'total'}_{leg_type.name}"
+            found = self.b.total(self.scalar(value), leg_type.name, stem)
+            self._note_total(expr, "", found)
+            return found
         if expr.is_Add:
             return self._scalar_add(expr, hint)
         if expr.is_Mul:

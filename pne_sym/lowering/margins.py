@@ -13,6 +13,8 @@ from pne_sym.lowering.builder import Atom, Builder, Guard
 from pne_sym.program.ir import Kind, Stage, Store
 
 _NOTHING_TESTED = sp.S.One
+OWN_NAMES = frozenset({"pivot_size", "pivot", "pivot_root", "least_pivots", "least_reach"})
+"""Of values that belong to no quantity."""
 
 
 class Margins:
@@ -50,4 +52,4 @@ class Margins:
 
     def _put(self, array: str, stage: Stage, values: list[Any], legs: tuple[int, ...]) -> None:
         least = self.b.let(sp.Min(*values), f"least_{array}") if values else _NOTHING_TESTED
-        self.stores.append((stage, Store(array, least, legs)))
+        self.stores.append((stage, Store(array, least, legs, equation=self.b.equation)))

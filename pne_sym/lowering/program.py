@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,7 +15,9 @@ from pne_sym.lowering.closures import closures, given_displacements
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.inputs import leg_inputs, unpack
 from pne_sym.lowering.margins import Margins
+from pne_sym.lowering.meaning import Meaning
 from pne_sym.lowering.public import public_functions
+from pne_sym.lowering.signs import settle
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
 from pne_sym.program.ir import (
     VECTORS,
@@ -69,9 +72,11 @@ def lower(derivation: Derivation) -> Program:
     builder.leg_counts = {t.name: len(t.indices) for t in derivation.leg_types}
     _declare(derivation, builder)
     shapes = _shapes(derivation)
-    slices = []
+    slices, lowerings = [], []
     for group in (*GROUPS, *_closure_groups(derivation)):
-        stores = _cheapest_stores(derivation, builder, {a for _, names in group for a in names})
+        together = {a for _, arrays in group for a in arrays}
+        stores, lowering = _cheapest_stores(derivation, builder, together)
+        lowerings.append(lowering)
         for name, arrays in group:
             chosen = [
                 (stage, store)
@@ -84,7 +89,9 @@ def lower(derivation: Derivation) -> Program:
             if present:
                 slices.append(_Slice(name, present, chosen))
     _add_margins(derivation, builder, {s.name: s for s in slices})
-    program = _program(derivation, builder, slices)
+    meaning = Meaning(derivation, lowerings)
+    _settle_signs(builder, meaning, slices)
+    program = _program(derivation, builder, slices, meaning)
     table = derivation.parameters
     outside = {name: parameter.leg_type or "" for name, (parameter, _) in table.entries.items()}
     verify(program, outside | {name: leg for name, (leg, _) in table.branches.items()})
@@ -114,20 +121,24 @@ def _closure_groups(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, 
     ]
 
 
+_Stored = dict[Output, list[tuple[Stage, Store]]]
+
+
 def _cheapest_stores(
     derivation: Derivation, builder: Builder, arrays: set[str]
-) -> dict[Output, list[tuple[Stage, Store]]]:
+) -> tuple[_Stored, Lowering]:
     """Lower the outputs of a group with each choice of rotations; keep the cheaper."""
     outputs = [o for o in derivation.outputs if o.array in arrays]
 
-    def run(*, columns: bool) -> tuple[int, dict[Output, list[tuple[Stage, Store]]]]:
+    def run(*, columns: bool) -> tuple[int, tuple[_Stored, Lowering]]:
         builder.live = set()
         lowering = Lowering(derivation, builder)
         if columns:
             lowering.form_tip_axes()
         stores = {output: _stores(lowering, output) for output in outputs}
         builder.live = set()
-        return builder.cost([s.value for found in stores.values() for _, s in found]), stores
+        cost = builder.cost([s.value for found in stores.values() for _, s in found])
+        return cost, (stores, lowering)
 
     mark = builder.mark()
     step_cost, by_steps = run(columns=False)
@@ -138,6 +149,23 @@ def _cheapest_stores(
     builder.rollback(mark)
     builder.redo(forgotten)
     return by_steps
+
+
+def _settle_signs(builder: Builder, meaning: Meaning, slices: list[_Slice]) -> None:
+    """Values that are components get their signs, where that costs nothing."""
+    needed = {s.target for part in slices for s in part.statements(builder)[0]}
+    used = [s for s in builder.statements if s.target in needed]
+    stores = dict.fromkeys(store for part in slices for store in part.stores)
+    printed = inline_single_use(used, list(stores), builder.guards)
+    turned = settle(builder, meaning, printed, [store.value for _, store in stores])
+    signs = {symbol: -symbol for symbol in turned}
+    for part in slices:
+        part.stores = [
+            (at, replace(store, value=sp.sympify(store.value).xreplace(signs)))
+            for at, store in part.stores
+        ]
+        if part.guards is not None:
+            part.guards = [g.rewritten(signs) for g in part.guards]
 
 
 def _declare(derivation: Derivation, builder: Builder) -> None:
@@ -201,7 +229,13 @@ def _stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
             found.append(
                 (
                     stage,
-                    Store(output.array, atom, _place(r, legs_r, output), _place(c, legs_c, output)),
+                    Store(
+                        output.array,
+                        atom,
+                        _place(r, legs_r, output),
+                        _place(c, legs_c, output),
+                        b.equation,
+                    ),
                 )
             )
     return found
@@ -274,10 +308,19 @@ class _Sliced:
     used: set[Any]
     constants: set[Any]
 
+    @property
+    def uses(self) -> list[tuple[Any, str]]:
+        """Expressions with their equations, where they say something of what they use."""
+        found = [(s.expr, s.equation) for s in self.run]
+        found += [(store.value, store.equation) for _, store in self.part.stores]
+        return found + [(e, g.equation) for g in self.guards for e in (g.value, g.scale)]
 
-def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> Program:
+
+def _program(
+    derivation: Derivation, builder: Builder, slices: list[_Slice], meaning: Meaning
+) -> Program:
     leg_types = [t.name for t in derivation.leg_types]
-    sliced = [_sliced(builder, part) for part in slices]
+    sliced = [_sliced(builder, part, meaning) for part in slices]
     constants = set().union(*(s.constants for s in sliced))
     stores = [
         (builder.stage_of(s), Store(s.name, s, 0)) for s in sorted(constants, key=lambda s: s.name)
@@ -285,7 +328,11 @@ def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> 
     chain = _closure(builder, constants)
     statements = inline_single_use([s for s in builder.statements if s.target in chain], stores, [])
     outside = set(builder.given_names())
-    names = numbered(statements, outside)
+    statements = meaning.told(statements, [use for s in sliced for use in s.uses])
+    ids = {s.target: s.equation for s in statements}
+    names = numbered(statements, outside, meaning.stem)
+    means = meaning.by_name(statements, names)
+    stores = [(at, replace(s, equation=ids.get(s.value, ""))) for at, s in stores]
     statements, stores, _ = renamed(names, statements, stores, [])
     stores = sorted(
         ((at, replace(s, array=s.value.name)) for at, s in stores), key=lambda item: item[1].array
@@ -293,7 +340,9 @@ def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> 
     prepare = _blocks(statements, stores, [], leg_types, parameters=True)
     listed = tuple((store.array, at.leg_type) for at, store in stores)
     reserved = outside | {name for name, _ in listed}
-    functions = {s.part.name: _function(derivation, builder, s, names, reserved) for s in sliced}
+    functions = {
+        s.part.name: _function(derivation, builder, s, names, reserved, meaning) for s in sliced
+    }
     return Program(
         prepare,
         listed,
@@ -302,13 +351,17 @@ def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> 
         dict(builder.leg_counts),
         closures(derivation),
         given_displacements(derivation),
+        means=means,
+        lowered=meaning.shown(),
     )
 
 
-def _sliced(builder: Builder, part: _Slice) -> _Sliced:
+def _sliced(builder: Builder, part: _Slice, meaning: Meaning) -> _Sliced:
     statements, guards = part.statements(builder)
     run = [s for s in statements if s.stage.depends_on_state]
     run = inline_single_use(run, part.stores, guards)
+    uses = [(store.value, store.equation) for _, store in part.stores]
+    run = meaning.told(run, uses + [(e, g.equation) for g in guards for e in (g.value, g.scale)])
     used = _used(run, part.stores, guards)
     constants = {s for s in used if not builder.stage_of(s).depends_on_state}
     return _Sliced(part, run, guards, used, constants)
@@ -329,6 +382,7 @@ def _function(
     sliced: _Sliced,
     prepared_names: dict[Any, Any],
     reserved: set[str],
+    meaning: Meaning,
 ) -> Function:
     assert derivation.coordinates is not None
     inputs, assignments, checks = [], [], []
@@ -337,10 +391,10 @@ def _function(
         if wanted and vector == "base":  # what must hold of a rotation, whatever is used of it
             wanted |= {c.value for c in conditions}
         chain = _closure_of(named, wanted)
-        own = [a for a in named if a.target in chain]
-        if own:
+        read = [a for a in named if a.target in chain]
+        if read:
             inputs.append(vector)
-            assignments += own
+            assignments += read
             checks += [c for c in conditions if c.value in chain]
     per_leg: dict[str, list[LegInput]] = {}
     for symbol in sorted(sliced.used, key=lambda s: s.name):
@@ -352,7 +406,12 @@ def _function(
     given = {s.name for s in sliced.used if s not in builder.of} | {
         a.target.name for a in assignments
     }
-    names = prepared_names | numbered(sliced.run, reserved | given)
+    own = numbered(
+        sliced.run,
+        reserved | given,
+        lambda s, made: meaning.stem(s, ChainMap(made, prepared_names)),
+    )
+    names = prepared_names | own
     run, stores, guards = renamed(names, sliced.run, sliced.part.stores, sliced.guards)
     constants = {names.get(s, s).name: builder.stage_of(s).leg_type for s in sliced.constants}
     return Function(
@@ -368,6 +427,7 @@ def _function(
             t.name: tuple(sorted(n for n, leg in constants.items() if leg == t.name))
             for t in derivation.leg_types
         },
+        meaning.by_name(sliced.run, own),
     )
 
 
@@ -443,9 +503,7 @@ def _blocks(
     blocks = []
     for stage in stages:
         own = [s for s in statements if s.stage == stage and not s.total_of]
-        sums = tuple(
-            (s.target, s.expr) for s in statements if s.total_of and s.total_of == stage.leg_type
-        )
+        totals = [s for s in statements if s.total_of and s.total_of == stage.leg_type]
         blocks.append(
             Block(
                 stage.leg_type,
@@ -455,8 +513,9 @@ def _blocks(
                     for g in guards
                     if g.stage == stage
                 ),
-                sums,
+                tuple((s.target, s.expr) for s in totals),
                 tuple(store for at, store in stores if at == stage),
+                tuple(s.equation for s in totals),
             )
         )
     return tuple(b for b in blocks if b.assignments or b.stores or b.sums or b.checks)

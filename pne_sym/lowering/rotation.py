@@ -5,15 +5,16 @@ Which is cheaper depends on what is there already and on how many vectors pass.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
 import sympy as sp
 
 from pne_sym.derivation import Equation
-from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.builder import Atom, Builder
 from pne_sym.lowering.frames import ConstantStep, Frames, Triple
 from pne_sym.lowering.trials import Trials
+from pne_sym.program.ir import Component
 from pne_sym.vector import nodes as n
 
 Tensor9 = tuple[Triple, Triple, Triple]
@@ -83,6 +84,12 @@ class Rotation:
             )
             for i in range(3)
         )
+
+    def components(self) -> Iterator[tuple[Component, Atom]]:
+        """The entries of axes that were made."""
+        for (origin, target, k), column in self._axis_columns.items():
+            for i, atom in enumerate(column):
+                yield Component("", target, (i, k), axes=origin), atom
 
     def axis_column(self, origin: str, target: str, k: int) -> Triple:
         """Axis k of a frame in another: along a known vector, by cross product, or turned."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -77,21 +78,27 @@ def _needed(
     return found[::-1]
 
 
-def numbered(statements: list[Statement], reserved: set[str]) -> dict[Any, Any]:
-    """Symbols whose names do not depend on other functions: equal hints numbered from one.
+def numbered(
+    statements: list[Statement],
+    reserved: set[str],
+    stem: Callable[[Statement, dict[Any, Any]], str],
+) -> dict[Any, Any]:
+    """Symbols whose names do not depend on other functions: equal stems numbered from one.
 
     Args:
         statements: whose targets are to be named.
         reserved: names that are taken.
+        stem: of the name of a statement's target, given the names of those before.
     """
     taken = set(reserved)
     names: dict[Any, Any] = {}
     issued: dict[str, int] = {}
     for statement in statements:
-        k = issued.get(statement.hint, 0) + 1
-        while (name := statement.hint if k == 1 else f"{statement.hint}_{k}") in taken:
+        of = stem(statement, names)
+        k = issued.get(of, 0) + 1
+        while (name := of if k == 1 else f"{of}_{k}") in taken:
             k += 1
-        issued[statement.hint] = k
+        issued[of] = k
         taken.add(name)
         names[statement.target] = sp.Symbol(name, real=True)
     return names

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -70,6 +70,43 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class Component:
+    """What a value is: a component of a quantity of the derivation, with its sign.
+
+    Attributes:
+        quantity: its name.
+        frame: along whose axes; "" for a scalar.
+        index: which component: none, one or two numbers.
+        over: the leg type over whose legs the equation of the quantity sums, where that sum is
+            meant; "" for the whole.
+        axes: a frame; then entry index[0] of its axis index[1] is meant, of no quantity.
+    """
+
+    quantity: str
+    frame: str = ""
+    index: tuple[int, ...] = ()
+    over: str = ""
+    axes: str = ""
+
+    @property
+    def name(self) -> str:
+        """The name of a value that is this; without a frame where the axes are the base's.
+
+        >>> Component("S", "base", (0,)).name, Component("W_2", "ups.axes2", (0, 1)).name
+        ('S_x', 'W_2_in_axes2_xy')
+        """
+        entries = "".join("xyz"[i] for i in self.index)
+        if self.axes:
+            return f"axis_{entries[1]}_{self.axes.replace('.', '_')}_{entries[0]}"
+        frame = "" if self.frame in ("", "base") else f"in_{self.frame.rpartition('.')[2]}"
+        return "_".join(part for part in (self.quantity, self.over, frame, entries) if part)
+
+
+Means = Mapping[str, tuple[Component, ...]]
+"""Name of a value -> what it is; of what has no entry the name says no more than what it is for."""
+
+
+@dataclass(frozen=True)
 class Assignment:
     """target = expr, tagged with the equation it belongs to."""
 
@@ -102,13 +139,15 @@ class Check:
 class Store:
     """An entry of an output array.
 
-    For a value per leg, `row` and `column` are tables over the legs of the type.
+    For a value per leg, `row` and `column` are tables over the legs of the type.  `equation` is
+    that of the quantity whose component is stored.
     """
 
     array: str
     value: Any
     row: int | tuple[int, ...]
     column: int | tuple[int, ...] | None = None
+    equation: str = ""
 
 
 @dataclass(frozen=True)
@@ -120,6 +159,7 @@ class Block:
         assignments: in order.
         checks: guards evaluated at the end of the block.
         sums: (target, value) accumulated over the legs.
+        sum_equations: the equation of each sum.
         stores: outputs written.
     """
 
@@ -128,6 +168,7 @@ class Block:
     checks: tuple[Check, ...] = ()
     sums: tuple[tuple[sp.Symbol, Any], ...] = ()
     stores: tuple[Store, ...] = ()
+    sum_equations: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -189,6 +230,7 @@ class Function:
         leg_inputs: inputs per leg, by leg type.
         shared: prepared values that it reads, not per leg.
         per_leg: prepared values that it reads per leg, by leg type.
+        means: what its values are.
     """
 
     name: str
@@ -200,6 +242,7 @@ class Function:
     leg_inputs: dict[str, tuple[LegInput, ...]] = field(default_factory=dict)
     shared: tuple[str, ...] = ()
     per_leg: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    means: Means = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -255,6 +298,9 @@ class Program:
         closures: leg types whose displacements are found by iteration.
         given: (position in q, position in X) of the extra coordinates.
         public: what users call, as steps over the functions.
+        means: what the prepared values are, and those made on the way to them.
+        lowered: quantity -> frame and components in which it was made first; of those alone
+            that were made as such.
     """
 
     prepare: tuple[Block, ...]
@@ -265,3 +311,5 @@ class Program:
     closures: tuple[Closure, ...] = ()
     given: tuple[tuple[int, int], ...] = ()
     public: tuple[PublicFunction, ...] = ()
+    means: Means = field(default_factory=dict)
+    lowered: Mapping[str, tuple[str, tuple[Any, ...]]] = field(default_factory=dict)

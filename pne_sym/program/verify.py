@@ -119,12 +119,15 @@ class _Scope:
                 self.assign(a.target, a.expr, leg_type, a.equation)
             self.checks(block.checks, leg_type)
             self.require(bool(leg_type) or not block.sums, "a sum over no legs")
+            told = len(block.sum_equations) == len(block.sums) and all(block.sum_equations)
+            self.require(told, "a sum without an equation id")
             for target, value in block.sums:
                 self.use([value], leg_type, f"sum {target}")
                 totals.append(target)
             for store in block.stores if arrays is not None else ():
                 self.use([store.value], leg_type, f"output {store.array}")
                 self.require(store.array in (arrays or ()), f"{store.array} is not an output")
+                self.require(bool(store.equation), f"output {store.array}: no equation id")
                 self._write(store)
         for symbol in totals:
             self.introduce(symbol, "")

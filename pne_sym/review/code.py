@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.target import Syntax
+from pne_sym.derivation import Derivation, Equation, names_in
+from pne_sym.program.ir import Block, Program
 from pne_sym.review.plain import plain
 
 _ID = re.compile(r"\s*\(([A-Za-z0-9_-]+)\)")
@@ -82,15 +84,70 @@ def _stays_open(line: str, syntax: Syntax) -> bool:
 
 def program_passages(bundle: Bundle, equation: str | None) -> tuple[Passage, ...]:
     """Statements of the scalar program that belong to an equation, or all with their ids."""
-    places = [("prepare", bundle.program.prepare)]
-    places += [(name, f.blocks) for name, f in bundle.program.functions.items()]
     in_function = {
         name: tuple(
-            f"{a.target} = {plain(a.expr)}" + ("" if equation else f"    ({a.equation})")
+            text if equation else f"{text}    ({own})"
             for block in blocks
-            for a in block.assignments
-            if equation in (None, a.equation)
+            for own, _, text in statements_of(block)
+            if equation in (None, own)
         )
-        for name, blocks in places
+        for name, blocks in _places(bundle.program)
     }
     return _grouped(in_function)
+
+
+def _places(program: Program) -> list[tuple[str, tuple[Block, ...]]]:
+    functions = [(name, f.blocks) for name, f in program.functions.items()]
+    return [("prepare", program.prepare), *functions]
+
+
+def statements_of(block: Block) -> Iterator[tuple[str, str, str]]:
+    """(equation, target, text) of assignments, sums and stores."""
+    for a in block.assignments:
+        yield a.equation, str(a.target), f"{a.target} = {plain(a.expr)}"
+    for (target, value), equation in zip(block.sums, block.sum_equations, strict=True):
+        yield equation, str(target), f"{target} += {plain(value)}"
+    for s in block.stores:
+        place = f"{s.array}[{s.row}{'' if s.column is None else f', {s.column}'}]"
+        yield (
+            s.equation,
+            place,
+            f"{place} = {plain(value) if (value := s.value) is not None else 0}",
+        )
+
+
+def why_without(bundle: Bundle, equation: Equation) -> str:
+    """Why no statement is an equation's: what its components are, and where it went."""
+    program, derivation = bundle.program, bundle.derivation
+    stated = {own for _, blocks in _places(program) for b in blocks for own, *_ in statements_of(b)}
+    into = _users(derivation, equation.name, stated)
+    used = f"used by {', '.join(into)}" if into else "used by the outputs alone"
+    if equation.name not in program.lowered:
+        return (
+            f"no statement of its own: it is never formed, what needs it is formed directly; {used}"
+        )
+    frame, atoms = program.lowered[equation.name]
+    shown = ", ".join(plain(atom) for atom in atoms)
+    where = f" in the frame {frame}" if frame not in ("", "base") else ""
+    if not any(atom.free_symbols for atom in atoms):
+        return f"no statement of its own: it is {shown}{where}, whatever the state; {used}"
+    made = {str(a.target) for _, bs in _places(program) for b in bs for a in b.assignments}
+    if any(str(s) not in made for atom in atoms for s in atom.free_symbols):
+        return (
+            f"no statement of its own: written where it is used, in {', '.join(into) or 'outputs'}"
+        )
+    return f"no statement of its own: it is {shown}{where}, values that are there already; {used}"
+
+
+def _users(derivation: Derivation, name: str, stated: set[str]) -> list[str]:
+    """The next equations that use a quantity and have statements."""
+    equations = tuple(derivation.equations())
+    reached, found = {name}, []
+    for e in equations:
+        parts = (e.rhs, *e.forms)
+        if e.name not in reached and any(names_in(part) & reached for part in parts):
+            if e.id in stated:
+                found.append(e.id)
+            else:
+                reached.add(e.name)
+    return found

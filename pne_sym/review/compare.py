@@ -35,6 +35,7 @@ from pne_sym.review.execution import ExecutionError
 from pne_sym.review.files import differing, file_differences
 from pne_sym.review.interface import interface_changes, operation_changes
 from pne_sym.review.model import Model, by_path, printed_equations
+from pne_sym.review.placed import contradictions
 from pne_sym.review.programs import first_statement, same_derivation, same_program
 from pne_sym.review.reproduction import reproduced
 from pne_sym.review.samples import length_of
@@ -173,6 +174,8 @@ def _with_values(found: Comparison, of: _Pair) -> Comparison:
     )
     if before.bundle and after.bundle and same_derivation(before.bundle, after.bundle):
         found = replace(found, statement=first_statement(before.bundle, after.bundle))
+    if any(b.verdict is Verdict.DIFFERENT for b in found.blocks):
+        found = replace(found, contradictions=contradictions((before, after), runs.samples()))
     notes = [*_notes(before, after, run=of.run), *_notes_of_values(found, of, runs)]
     return _with_effects(replace(found, notes=tuple(notes)), of, runs.defaults)
 
@@ -365,6 +368,7 @@ def _notes_of_values(found: Comparison, of: _Pair, runs: Runs) -> Iterator[str]:
         of.ours
         and any(b.verdict is Verdict.DIFFERENT for b in found.blocks)
         and not found.structure
+        and not found.contradictions
         and runs.comparable
     ):
         yield "all equations agree: what differs is outside them (lowering, branches, home)"

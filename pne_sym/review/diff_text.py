@@ -105,6 +105,10 @@ def _cause(found: Comparison) -> str:
     if found.structure:
         e = found.structure[0]
         return f"the derivation, first at {e.id}, {e.title}"
+    if found.contradictions:
+        c = found.contradictions[0]
+        line = f", {c.line}" if c.line else ""
+        return f"the lowering, first at {c.equation} ({c.target}) in {c.function}{line}"
     if found.statement is not None:
         s = found.statement
         return f"the lowering, first at {s.equation} ({s.target}) in {s.function}"
@@ -204,6 +208,11 @@ def _structure(found: Comparison) -> Iterator[str]:
             f"first of ({s.equation}) in {s.function}"
         )
         yield from before_after(s.before, s.after)
+    for c in found.contradictions:
+        line = f", {c.line}" if c.line else ""
+        yield f"  {c.version}: the code contradicts its derivation, first at ({c.equation})"
+        yield f"    {c.target} in {c.function}{line}"
+        yield f"    is {c.found:.6g}; by the derivation {c.means} is {c.expected:.6g}"
     yield f"  {_unchanged(found)}"
 
 

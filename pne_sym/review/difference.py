@@ -149,6 +149,30 @@ class StatementDifference:
 
 
 @dataclass(frozen=True)
+class Contradiction:
+    """The first statement of a program whose value is not what its own derivation says.
+
+    Attributes:
+        version: which of the two versions has it.
+        equation: id of its equation.
+        target: name of the value, or place of a stored entry.
+        function: where it stands.
+        means: what it is called: the component of which quantity, in which frame.
+        line: "stewart.c:1512", or empty.
+        found, expected: its value at a state, and what the equation says.
+    """
+
+    version: str
+    equation: str
+    target: str
+    function: str
+    means: str
+    line: str
+    found: float
+    expected: float
+
+
+@dataclass(frozen=True)
 class OperationChange:
     """Operation counts of a function: mul, add, div, sqrt, trig."""
 
@@ -214,6 +238,7 @@ class Comparison:
         specification: what was edited; None where a version does not hold its specification.
         effects: on what engineers design by, each version at its own defaults.
         statement: where the programs of one derivation first differ.
+        contradictions: of versions whose code does not compute what their derivation says.
     """
 
     before: str
@@ -232,6 +257,7 @@ class Comparison:
     specification: tuple[Edit, ...] | None = None
     effects: tuple[Effect, ...] = ()
     statement: StatementDifference | None = None
+    contradictions: tuple[Contradiction, ...] = ()
 
     @property
     def equal(self) -> bool:
@@ -272,6 +298,7 @@ class Comparison:
             "blocks": [_plain(b) for b in self.blocks],
             "first_difference": self.origins[0].id if self.origins else None,
             "first_statement": _plain(self.statement) if self.statement else None,
+            "contradictions": [_plain(c) for c in self.contradictions],
             "identical_equations": len(self.equations) - len(listed),
             "equations": [_plain(e) for e in listed],
             "effects": [_plain(e) for e in self.effects],

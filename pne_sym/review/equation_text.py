@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from pne_sym.derivation import Equation, Frame, Given
+from pne_sym.derivation import Equation, Frame, Given, leg_sums
 from pne_sym.review.plain import plain
-from pne_sym.vector import LegSum, TensorLegSum, VectorLegSum
 
 
 def formula(equation: Equation) -> str:
@@ -41,9 +40,6 @@ def frame_text(frame: Frame) -> str:
     return str((frame.rotation, frame.axes, frame.rows, frame.angle))
 
 
-def leg_sums(expr: Any) -> list[str]:
+def summed_types(expr: Any) -> list[str]:
     """The leg types that an expression sums over, in order."""
-    if isinstance(expr, LegSum | VectorLegSum | TensorLegSum):
-        return [str(expr.args[1])]
-    found = [t for arg in getattr(expr, "args", ()) for t in leg_sums(arg)]
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(str(total.args[1]) for total in leg_sums(expr)))

@@ -22,7 +22,7 @@ from pne_sym.review.equation_text import (
     formula,
     frame_text,
     given_text,
-    leg_sums,
+    summed_types,
     text_of,
 )
 from pne_sym.review.evaluation import State, Structure
@@ -243,7 +243,7 @@ class DerivationComparer:
             yield f"was {before.id}"
         if (before.law, before.reference) != (after.law, after.reference):
             yield f"law: {before.law}, {before.reference} -> {after.law}, {after.reference}"
-        for leg_type in leg_sums(after.rhs):
+        for leg_type in summed_types(after.rhs):
             legs = self.b.legs.get(leg_type, ())
             old = self.a.legs.get(self.names.alignment.types.get(leg_type, ""), ())
             if old and len(old) != len(legs):

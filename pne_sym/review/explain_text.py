@@ -12,7 +12,7 @@ from pne_sym.backends.emission import emit_target
 from pne_sym.backends.target import Syntax, Target
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
-from pne_sym.review.code import Passage, passages, program_passages
+from pne_sym.review.code import Passage, passages, program_passages, why_without
 from pne_sym.review.explain import Explanation, Related, explain, find_equation
 from pne_sym.review.plain import plain
 
@@ -67,14 +67,11 @@ def stage_lines(
         found = passages(_code(bundle, of), equation.id, _syntax(of))
     if stage is None:
         yield ""
-        yield "statements of the scalar program" if found else _no_statements(equation.id)
-    elif not found:
-        yield _no_statements(equation.id)
+        if found:
+            yield "statements of the scalar program"
+    if not found:
+        yield from _hanging("", why_without(bundle, equation))
     yield from _passages(found)
-
-
-def _no_statements(equation: str) -> str:
-    return f"no statement of its own: what uses {equation} is formed directly"
 
 
 def _whole(bundle: Bundle, stage: str | None) -> Iterator[str]:

@@ -8,8 +8,8 @@ from itertools import zip_longest
 from typing import Any
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.review.code import statements_of
 from pne_sym.review.difference import StatementDifference
-from pne_sym.review.plain import plain
 
 
 def same_derivation(before: Bundle, after: Bundle) -> bool:
@@ -53,22 +53,10 @@ def _differences(before: Bundle, after: Bundle) -> Iterator[tuple[tuple[str, str
         blocks = [p.functions[name].blocks if name in p.functions else () for p in (old, new)]
         places.append((name, blocks))
     for name, sides in places:
-        rows = [list(_statements(blocks)) for blocks in sides]
+        rows = [[s for block in blocks for s in statements_of(block)] for blocks in sides]
         known = [{(e, t): text for e, t, text in side} for side in rows]
         for a, b in zip_longest(*rows):
             for row in (r for r in (a, b) if r is not None):
                 key = row[:2]
                 yield (*key, name), known[0].get(key, ""), known[1].get(key, "")
                 break
-
-
-def _statements(blocks: Any) -> Iterator[tuple[str, str, str]]:
-    """(equation, target, text) of assignments, sums and stores."""
-    for block in blocks:
-        for a in block.assignments:
-            yield a.equation, str(a.target), f"{a.target} = {plain(a.expr)}"
-        for target, value in block.sums:
-            yield "", str(target), f"{target} += {plain(value)}"
-        for s in block.stores:
-            place = f"{s.array}[{s.row}{'' if s.column is None else f', {s.column}'}]"
-            yield "", place, f"{place} = {plain(value) if (value := s.value) is not None else 0}"

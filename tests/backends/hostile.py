@@ -87,10 +87,14 @@ def compare(library: CLibrary, name: str, given: dict[str, Array], bound: Array)
 
 
 def _size(library: CLibrary, name: str, given: dict[str, Array], found: list[Array]) -> Array:
-    """Largest output for inputs of this size in other directions: terms can cancel in one."""
+    """Largest output for inputs of this size in other directions: terms can cancel in one.
+
+    Not a number where all other directions overflow: what cancels in this one is not known there.
+    """
     rng, order = np.random.default_rng(1), [i.name for i in library.api[name].inputs]
     with np.errstate(all="ignore"):
         size = np.max([np.nanmax(np.abs(a), axis=1, initial=0.0) for a in found], axis=0)
+        known = np.zeros(len(size), dtype=bool)
         for _ in range(DIRECTIONS):
             turned = {
                 n: np.max(np.abs(given[n]), axis=1, keepdims=True)
@@ -99,8 +103,9 @@ def _size(library: CLibrary, name: str, given: dict[str, Array], found: list[Arr
             }
             turned |= {n: given[n] for n in ("X", "q0")}
             for array in library.batch(name, *(turned[n] for n in order))[0]:
+                known |= np.isfinite(array).all(axis=1)
                 size = np.fmax(size, np.nanmax(np.abs(array), axis=1, initial=0.0))
-    return np.asarray(size)
+        return np.where(known, size, np.nan)
 
 
 def bounds(name: str, given: dict[str, Array]) -> tuple[Array, Array]:

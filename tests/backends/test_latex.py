@@ -12,8 +12,7 @@ from pne_sym import manipulators
 from pne_sym.backends.glyphs import Glyph, visible_width
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.names import printer_for
-from pne_sym.derivation import Derivation, Equation, names_in
-from pne_sym.derivation.equation import has_leg_sum
+from pne_sym.derivation import Derivation, Equation, leg_sums, names_in
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import (
@@ -186,7 +185,7 @@ def test_formulas_read_back(derivation: Derivation) -> None:
 
 def _readable(equation: Equation) -> list[Any]:
     """What can be evaluated: no sums over legs, no inverse of a matrix told elsewhere."""
-    found = [e for e in (equation.rhs, *equation.forms) if not has_leg_sum(e)]
+    found = [e for e in (equation.rhs, *equation.forms) if not leg_sums(e)]
     return [e for e in found if not isinstance(e, DualVector | DualScalar) and e != ZeroVector]
 
 

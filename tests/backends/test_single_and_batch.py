@@ -37,6 +37,7 @@ def test_hostile_states(library: CLibrary) -> None:
         assert both.sum() > 100
         with np.errstate(all="ignore"):
             known = both & np.isfinite(found.bound) & np.isfinite(found.error)
+        assert known.sum() > 100
         assert (found.error <= found.bound)[known].all(), name
 
 

@@ -15,6 +15,8 @@ import pytest
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.emission import emit
 from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.margins import OWN_NAMES
+from pne_sym.lowering.meaning import Meaning
 from pne_sym.lowering.program import lower
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.count import count_function
@@ -63,9 +65,12 @@ def test_a_common_prefix_is_all_that_changes(name: str, monkeypatch: pytest.Monk
     before = emit(models.bundle(manipulator), TARGETS)
 
     def renamed_stem(self: Builder, hint: str, stage: Any) -> str:
-        return prefixed(stem(self, hint, stage))
+        made = stem(self, hint, stage)
+        return made if hint in OWN_NAMES else prefixed(made)
 
     monkeypatch.setattr(Builder, "_stem", renamed_stem)
+    told = Meaning.stem
+    monkeypatch.setattr(Meaning, "stem", lambda *given: prefixed(told(*given)))
     after = emit(under_other_names(manipulator, prefixed), TARGETS)
     assert before.keys() == after.keys()
     for file, text in before.items():

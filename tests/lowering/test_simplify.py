@@ -93,7 +93,7 @@ def test_no_absolute_value_comes_of_the_root_of_a_square() -> None:
 def test_names_depend_on_the_statements_alone() -> None:
     first = Statement(sp.Symbol("r_17", real=True), x * y, STATE, "eq1", hint="r")
     second = Statement(sp.Symbol("r_99", real=True), first.target + z, STATE, "eq1", hint="r")
-    names = numbered([first, second], reserved={"r"})
+    names = numbered([first, second], {"r"}, lambda statement, _: statement.hint)
     assert [str(names[s.target]) for s in (first, second)] == ["r_2", "r_3"]
     guard = Guard("singular", second.target, z, 1, STATE, "eq1")
     statements, stores, guards = renamed(names, [first, second], _stores(second.target), [guard])

@@ -30,6 +30,10 @@ def real(name: str) -> Any:
 PARAMETERS = {"k": "leg", "g": ""}
 
 
+def _store(array: str, value: Any, row: Any, column: Any = None) -> Store:
+    return Store(array, value, row, column, "E1")
+
+
 def program(**changes: Any) -> Program:
     """A small program with every feature; `changes` replace parts of its function."""
     f = Function(
@@ -42,19 +46,20 @@ def program(**changes: Any) -> Program:
             Block(
                 "",
                 (Assignment(real("u"), real("t") + real("g2"), "P1"),),
-                stores=(Store("Z", real("u"), 0),),
+                stores=(_store("Z", real("u"), 0),),
             ),
             Block(
                 "leg",
                 (Assignment(real("v"), sp.sqrt(real("u")) * real("k2") / real("y"), "L1"),),
                 checks=(Check("singular", real("v"), real("k2"), 1, "L1"),),
                 sums=((real("w"), real("v")),),
-                stores=(Store("M", -real("v"), (0, 1), 1),),
+                sum_equations=("E1",),
+                stores=(_store("M", -real("v"), (0, 1), 1),),
             ),
             Block(
                 "",
                 (Assignment(real("z"), real("w") ** 2, "E1"),),
-                stores=(Store("M", real("z"), 0, 0), Store("Z", real("u"), 1)),
+                stores=(_store("M", real("z"), 0, 0), _store("Z", real("u"), 1)),
             ),
         ),
         leg_inputs={"leg": (LegInput(real("y"), "X", (1, 2)),)},
@@ -196,35 +201,35 @@ SPOILT: dict[str, tuple[Callable[[], Program], str]] = {
         "not a real symbol",
     ),
     "an output written twice": (
-        lambda: with_leg(stores=(Store("M", real("v"), (0, 0), 1),)),
+        lambda: with_leg(stores=(_store("M", real("v"), (0, 0), 1),)),
         r"M\[0, 1\] is written twice",
     ),
     "an output written in two blocks": (
-        lambda: with_leg(stores=(Store("M", real("v"), (0, 1), 0),)),
+        lambda: with_leg(stores=(_store("M", real("v"), (0, 1), 0),)),
         r"M\[0, 0\] is written twice",
     ),
     "an output outside its shape": (
-        lambda: with_leg(stores=(Store("M", real("v"), (0, 2), 1),)),
+        lambda: with_leg(stores=(_store("M", real("v"), (0, 2), 1),)),
         "outside the shape",
     ),
     "an output at a negative place": (
-        lambda: with_leg(stores=(Store("M", real("v"), (0, -1), 1),)),
+        lambda: with_leg(stores=(_store("M", real("v"), (0, -1), 1),)),
         "outside the shape",
     ),
     "a vector with a column": (
-        lambda: with_leg(stores=(Store("Z", real("v"), 1, 1),)),
+        lambda: with_leg(stores=(_store("Z", real("v"), 1, 1),)),
         "outside the shape",
     ),
     "an output of another function": (
-        lambda: with_leg(stores=(Store("H", real("v"), 0, 1),)),
+        lambda: with_leg(stores=(_store("H", real("v"), 0, 1),)),
         "H is not an output",
     ),
     "an output of an unknown value": (
-        lambda: with_leg(stores=(Store("M", real("q"), 0, 1),)),
+        lambda: with_leg(stores=(_store("M", real("q"), 0, 1),)),
         "q is not defined",
     ),
     "uneven tables": (
-        lambda: with_leg(stores=(Store("M", real("v"), (0, 1), (1, 1, 1)),)),
+        lambda: with_leg(stores=(_store("M", real("v"), (0, 1), (1, 1, 1)),)),
         "uneven",
     ),
     "a sum over no legs": (

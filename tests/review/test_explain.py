@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from pne_sym.backends import registry
 from pne_sym.backends.target import Syntax
 from pne_sym.derivation import names_in
-from pne_sym.review.code import passages
+from pne_sym.review.code import passages, program_passages, why_without
 from pne_sym.review.explain import UnknownEquationError, explain, find_equation
+from pne_sym.review.explain_text import stage_lines
 from tests.models import bundle, catalogue, source
 
 STEWART = catalogue("stewart")
@@ -76,6 +79,36 @@ def test_statements_in_the_numpy_code_stand_there_under_the_equation() -> None:
     assert {"_run_M", "_run_inverse_kinematics"} <= {f for p in found for f in p.functions}
     for passage in found:
         assert {line.split(" = ")[0] for line in passage.lines} >= {"ups_S_x", "ups_S_y", "ups_S_z"}
+
+
+def test_what_has_no_statement_says_why() -> None:
+    """Every equation has statements in the program, or a reason that names where it went."""
+    compiled = bundle(STEWART)
+    reasons = {}
+    for equation in compiled.derivation.equations():
+        if not program_passages(compiled, equation.id):
+            reasons[equation.name] = why_without(compiled, equation)
+    assert len(reasons) < 40
+    assert all(re.search(r"(used by|used, in) .", reason) for reason in reasons.values())
+    assert "it is ups_root_2, 0, 0 in the frame ups.axes2" in reasons["ups_xi_2"]
+    assert "written where it is used, in ups-" in reasons["ups_d_G"]
+    shown = list(stage_lines(compiled, "c", "qd_2"))
+    assert any("const real ups_qd_2 = " in line for line in shown)
+    assert not any("no statement" in line for line in shown)
+
+
+def test_stores_and_sums_stand_under_their_equations() -> None:
+    compiled = bundle(STEWART)
+    for name, text in (
+        ("M_tt", "M[0, 0] = M_tt_xx"),
+        ("Z_t", "Z_t_ups_x += ups_U_x"),
+        ("ups_q_3", "q["),
+    ):
+        wanted = compiled.derivation.definition(name).id
+        lines = [line for p in program_passages(compiled, wanted) for line in p.lines]
+        assert any(line.startswith(text) for line in lines), name
+    in_c = "\n".join(stage_lines(compiled, "c", "M_tt"))
+    assert "M[0*w + k] = M_tt_xx;" in in_c
 
 
 def test_statements_of_c_code() -> None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import pytest
 import sympy as sp
@@ -13,6 +15,8 @@ import sympy as sp
 from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
 from pne_sym.derivation import ParameterTable
+from pne_sym.lowering.components import Lowering
+from pne_sym.lowering.program import lower
 from pne_sym.model.reader import from_text
 from pne_sym.pipeline import compile_bundle
 from pne_sym.review.compare import compare
@@ -250,11 +254,41 @@ def test_a_fault_in_the_lowering() -> None:
     assert not found.equal
     assert not found.structure
     assert found.statement is not None
-    assert verdict(found).startswith(
-        f"different: the lowering, first at {found.statement.equation} ("
-    )
     assert f"-   {found.statement.before}" in list(as_text(found))
-    assert len(list(as_text(found))) <= 45
+    (placed,) = found.contradictions
+    assert (placed.version, placed.function) == ("after", "Z")
+    assert placed.equation == found.statement.equation
+    assert re.fullmatch(rf"{MODEL}\.c:\d+", placed.line)
+    assert verdict(found) == (
+        f"different: the lowering, first at {placed.equation} ({placed.target}) in Z, {placed.line}"
+    )
+    assert any("contradicts its derivation" in line for line in as_text(found))
+    assert len(list(as_text(found))) <= 48
+
+
+def test_a_fault_in_a_product_of_tensors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the lowering's own code, against a folder of before: no statement is as it was."""
+    right = Lowering._skew_squared
+
+    def wrong(self: Lowering, w: Any, hint: str) -> Any:
+        rows = right(self, w, hint)
+        return tuple(
+            tuple(-e if i != j else e for j, e in enumerate(r)) for i, r in enumerate(rows)
+        )
+
+    before = bundled("tripod_3rps")
+    monkeypatch.setattr(Lowering, "_skew_squared", wrong)
+    manipulator = catalogue("tripod_3rps")
+    derivation = bundle(manipulator).derivation
+    after = from_bundle("after", Bundle(manipulator, derivation, lower(derivation)))
+    found = compare(before, after)
+    assert not found.structure
+    (placed,) = found.contradictions
+    assert placed.target == "W_p_xy"
+    assert placed.equation == derivation.definition("W_p").id
+    assert verdict(found).startswith(
+        f"different: the lowering, first at {placed.equation} (W_p_xy)"
+    )
 
 
 def flipped(of: Bundle, function: str, wanted: Callable[[object], bool]) -> Bundle:

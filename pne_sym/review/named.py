@@ -1,0 +1,176 @@
+"""Whether the values of a program are what the derivation says that they are.
+
+Every value that bears the name of a quantity's component, every sum over legs and every stored
+entry is compared with the equation of that quantity, evaluated on its own at a state: with vectors
+and tensors in base axes, by nothing but the derivation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pne_sym.derivation import Derivation, leg_sums
+from pne_sym.program.evaluate import Array, Status, evaluate, prepare
+from pne_sym.program.ir import Block, Component, Means, Program
+from pne_sym.program.slices import places_of
+from pne_sym.review.arrays import assembled, by_array
+from pne_sym.review.evaluation import State, Structure
+
+TOLERANCE = 1e-8
+"""Of a component's error, over the largest entry of its quantity."""
+_SMALL = 1e-9  # what rounding leaves of a quantity that is zero
+
+
+@dataclass(frozen=True)
+class Situation:
+    """Numbers to evaluate a model at: parameters by name, and one X, V, A, q."""
+
+    parameters: Mapping[str, Any]
+    vectors: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement of a program that says what its value is.
+
+    Attributes:
+        function: of the program, or "prepare".
+        equation: its id.
+        name: of the value, or the place of a stored entry.
+        means: what it is.
+        leg: position of the leg, or None.
+        found: its value.
+        expected: what the equations say.
+        size: of the quantity, by its largest entry.
+    """
+
+    function: str
+    equation: str
+    name: str
+    means: str
+    leg: int | None
+    found: float
+    expected: float
+    size: float
+
+    @property
+    def is_right(self) -> bool:
+        """Whether the two agree."""
+        if not np.isfinite(self.expected):  # a state at which the model has no values
+            return not np.isfinite(self.found)
+        return bool(abs(self.found - self.expected) <= TOLERANCE * self.size + _SMALL)
+
+
+def first_contradiction(
+    derivation: Derivation, program: Program, situations: Iterable[Situation]
+) -> Statement | None:
+    """The first statement, in order of computation, that contradicts its derivation."""
+    structure = Structure(derivation)
+    for situation in situations:
+        for statement in statements(structure, program, situation):
+            if not statement.is_right:
+                return statement
+    return None
+
+
+def statements(structure: Structure, program: Program, at: Situation) -> Iterator[Statement]:
+    """Everything that says what it is, in order of computation, with its value at a state."""
+    table = structure.derivation.parameters
+    prepared = prepare(program, table.values(at.parameters))
+    state = State(structure, at.parameters, at.vectors)
+    yield from _Values(structure, state, "prepare", program.means, prepared).of(program.prepare)
+    vectors = {name: np.asarray(v, dtype=float)[None] for name, v in at.vectors.items()}
+    outputs = by_array(structure.derivation)
+    for name, function in program.functions.items():
+        found = evaluate(program, name, prepared, vectors)
+        values = _Values(structure, state, name, function.means, found.values)
+        yield from values.of(function.blocks)
+        for array in function.arrays:
+            if array in outputs and found.status[0] == Status.OK:
+                entries = assembled(state, outputs[array])
+                yield from values.stored(function.blocks, array, entries, found.outputs[array][0])
+
+
+class _Values:
+    """The values of a function at a state, beside what the equations say."""
+
+    def __init__(
+        self,
+        structure: Structure,
+        state: State,
+        function: str,
+        means: Means,
+        values: Mapping[str, Array],
+    ) -> None:
+        self.structure, self.state = structure, state
+        self.function, self.means, self.values = function, means, values
+
+    def of(self, blocks: Iterable[Block]) -> Iterator[Statement]:
+        """Assignments and sums."""
+        for block in blocks:
+            legs = self.structure.legs[block.leg_type] if block.leg_type else (None,)
+            for a in block.assignments:
+                yield from self._named(str(a.target), a.equation, legs)
+            totals = zip(block.sums, block.sum_equations, strict=True)
+            for (target, _), equation in totals:
+                yield from self._named(str(target), equation, (None,))
+
+    def _named(self, name: str, equation: str, legs: Iterable[int | None]) -> Iterator[Statement]:
+        for component in self.means.get(name, ()):
+            for k, leg in enumerate(legs):
+                whole = self._expected(component, leg)
+                value = np.atleast_1d(self.values[name])
+                found = value.reshape(value.shape[0], -1)[min(k, len(value) - 1), 0]
+                yield Statement(
+                    self.function,
+                    equation,
+                    name,
+                    component.name,
+                    leg,
+                    float(found),
+                    float(whole[component.index]),
+                    float(np.abs(whole).max()),
+                )
+
+    def _expected(self, component: Component, leg: int | None) -> Array:
+        """The whole quantity in its frame."""
+        state = self.state
+        turned = state.rotation(component.frame, leg) if component.frame else None
+        if component.axes:
+            assert turned is not None
+            return np.asarray(turned.T @ state.rotation(component.axes, leg))
+        value = np.asarray(self._value(component, leg), dtype=float)
+        if turned is None or value.ndim == 0:
+            return value
+        return np.asarray(turned.T @ value if value.ndim == 1 else turned.T @ value @ turned)
+
+    def _value(self, component: Component, leg: int | None) -> Any:
+        if not component.over:
+            return self.state.value(component.quantity, leg)
+        equation = self.structure.equations[component.quantity]
+        (total,) = (s for s in leg_sums(equation.rhs) if str(s.args[1]) == component.over)
+        return self.state.of(total, None)
+
+    def stored(
+        self,
+        blocks: Iterable[Block],
+        array: str,
+        expected: Mapping[tuple[int, int], float],
+        found: Array,
+    ) -> Iterator[Statement]:
+        """Entries of an output array, at the statements that store them."""
+        size = max(map(abs, expected.values()), default=0.0)
+        flat = found.reshape(found.shape[0], -1)
+        for block in blocks:
+            legs = self.structure.legs[block.leg_type] if block.leg_type else (None,)
+            for store in (s for s in block.stores if s.array == array):
+                for leg, place in zip(legs, places_of(store, len(legs)), strict=True):
+                    row, column = place
+                    of = f"{array}[{row}, {column}]" if found.ndim == 2 else f"{array}[{row}]"
+                    value = expected.get(place, 0.0)
+                    entry = float(flat[place])
+                    yield Statement(self.function, store.equation, of, of, leg, entry, value, size)
